@@ -1,0 +1,86 @@
+#include "core/base/parallel.h"
+
+#include <algorithm>
+#include <exception>
+#include <thread>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "core/base/check.h"
+
+namespace softreel {
+
+struct Threads::Arena {
+  explicit Arena(int count) : arena(count) {}
+  tbb::task_arena arena;
+};
+
+namespace {
+
+int processors() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// The failure of the first chunk that failed: exceptions are carried over the loop as values.
+void rethrow_first(const std::vector<std::exception_ptr>& failures) {
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+Threads::Threads(int count) : count_(count == 0 ? processors() : count) {
+  CHECK(count >= 0);
+  arena_ = std::make_unique<Arena>(count_);
+}
+
+Threads::~Threads() = default;
+
+void Threads::for_chunks(std::int64_t n, std::int64_t grain, const ChunkBody& body) const {
+  CHECK(grain > 0);
+  const std::int64_t chunks = (n + grain - 1) / grain;
+  if (chunks <= 0) return;
+  if (count_ == 1 || chunks == 1) {
+    for (std::int64_t k = 0; k < chunks; ++k) body(k * grain, std::min(n, (k + 1) * grain));
+    return;
+  }
+  std::vector<std::exception_ptr> failures(static_cast<std::size_t>(chunks));
+  arena_->arena.execute([&] {
+    tbb::parallel_for(std::int64_t{0}, chunks, [&](std::int64_t k) {
+      try {
+        body(k * grain, std::min(n, (k + 1) * grain));
+      } catch (...) {
+        failures[static_cast<std::size_t>(k)] = std::current_exception();
+      }
+    });
+  });
+  rethrow_first(failures);
+}
+
+double Threads::sum_chunks(std::int64_t n, std::int64_t grain, const ChunkSum& body) const {
+  CHECK(grain > 0);
+  const std::int64_t chunks = std::max<std::int64_t>(0, (n + grain - 1) / grain);
+  std::vector<double> partial(static_cast<std::size_t>(chunks), 0.0);
+  for_chunks(n, grain, [&](std::int64_t begin, std::int64_t end) {
+    partial[static_cast<std::size_t>(begin / grain)] = body(begin, end);
+  });
+  double sum = 0;
+  for (const double part : partial) sum += part;
+  return sum;
+}
+
+void Threads::run(const std::function<void()>& work) const {
+  std::exception_ptr failure;
+  arena_->arena.execute([&] {
+    try {
+      work();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  });
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace softreel

@@ -1,0 +1,44 @@
+#include "core/constraints/keys.h"
+
+#include <algorithm>
+
+namespace softreel {
+
+double eased(Ease ease, double t) {
+  switch (ease) {
+    case Ease::Constant:
+      return 0;
+    case Ease::Linear:
+      return t;
+    case Ease::Smooth:
+      return t * t * (3 - 2 * t);
+  }
+  return t;
+}
+
+Transform Transform::operator+(const Transform& o) const {
+  return {translate + o.translate, rotate + o.rotate, scale + o.scale, pivot + o.pivot};
+}
+
+Transform Transform::operator-(const Transform& o) const {
+  return {translate - o.translate, rotate - o.rotate, scale - o.scale, pivot - o.pivot};
+}
+
+Transform operator*(double s, const Transform& t) {
+  return {s * t.translate, s * t.rotate, s * t.scale, s * t.pivot};
+}
+
+Vec3 Transform::apply(const Vec3& p) const {
+  if (rotate.isZero(0) && scale == Vec3::Ones()) return p + translate;
+  const Vec3 scaled = scale.cwiseProduct(p - pivot);
+  const Eigen::AngleAxisd x(rotate.x(), Vec3::UnitX()), y(rotate.y(), Vec3::UnitY()), z(rotate.z(), Vec3::UnitZ());
+  return pivot + z * (y * (x * scaled)) + translate;
+}
+
+bool is_active(const std::vector<FrameRange>& ranges, double frame) {
+  return ranges.empty() || std::any_of(ranges.begin(), ranges.end(), [frame](const FrameRange& range) {
+           return range.first <= frame && frame <= range.last;
+         });
+}
+
+}  // namespace softreel

@@ -1,0 +1,71 @@
+/// The linear solver of softreel: conjugate gradients in double, preconditioned by a multigrid cycle in float.
+///
+/// Transfers and patterns depend on the mesh alone; `update` takes new matrix values (Galerkin products R K R^T on
+/// every level, design 4.5), `solve` uses them. Pins never change the structure: they zero rows and columns of the fine
+/// matrix.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/timer.h"
+#include "core/sparse/block_matrix.h"
+#include "core/sparse/solve_report.h"
+#include "core/tetmesh/tet_mesh.h"
+
+namespace softreel {
+
+enum class GalerkinMethod { Naive, Stream, Gather };
+enum class CycleKind { V, W };
+
+struct MultigridParams {
+  GalerkinMethod galerkin = GalerkinMethod::Gather;  ///< how R K R^T is formed; all agree to round-off
+  CycleKind coarse_cycle = CycleKind::W;             ///< below the finest level, which always takes one V
+  int sweeps = 1;                                    ///< symmetric Gauss-Seidel sweeps before and after
+  int bottom_nodes = 150;                            ///< at most this many nodes on the level that Cholesky solves
+  double dropped_weight = 0.1;                       ///< transfer weights below are dropped, the rest renormalised
+  double stiffness_contrast = 10;                    ///< coarse nodes are copied per side of an edge of more contrast
+};
+
+/// One level as the report shows it.
+struct LevelInfo {
+  Index nodes = 0;
+  std::int64_t blocks = 0;
+  std::int64_t bytes = 0;
+};
+
+/// Hierarchy over one body. Deterministic at any thread count.
+class Multigrid {
+ public:
+  /// element_stiffness: Young's modulus per element, Pa, for the copies at contrasts; empty: homogeneous.
+  /// pattern: that of the fine matrix, stiffness_pattern(mesh.tets, nodes). threads is kept by reference.
+  Multigrid(const TetMesh& mesh, std::span<const double> element_stiffness, const BlockPattern& pattern,
+            const MultigridParams& params, const Threads& threads);
+  ~Multigrid();
+  Multigrid(Multigrid&&) noexcept;
+
+  /// Rebuilds all coarse operators and smoothers from a fine matrix: symmetric, positive definite on the nodes that are
+  /// not pinned. A pinned node (pinned[i] != 0; empty: none) has zero rows and columns but for a diagonal block of at
+  /// most the mean diagonal. The matrix is copied as far as the cycle needs it. Time goes to "update".
+  void update(const BlockMatrixd& matrix, std::span<const std::uint8_t> pinned);
+
+  /// Solves matrix * x = b to |b - A x| <= tolerance * |b| or <= absolute_tolerance, starting from x.
+  /// matrix: that of the last update, or one near it (a lagged hierarchy stays a valid preconditioner).
+  SolveReport solve(const BlockMatrixd& matrix, std::span<const Vec3> b, std::span<Vec3> x, double tolerance,
+                    double absolute_tolerance, int max_iterations);
+
+  std::vector<LevelInfo> levels() const;
+
+ private:
+  struct Levels;
+  std::unique_ptr<Levels> levels_;
+};
+
+/// The table of levels that a report prints: level, nodes, blocks, bytes.
+std::string describe(const std::vector<LevelInfo>& levels);
+
+}  // namespace softreel

@@ -1,0 +1,23 @@
+/// Carries the deformation of the tetrahedra to the surface points embedded in them.
+#pragma once
+
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/types.h"
+#include "core/skinning/embedding.h"
+#include "core/tetmesh/tet_mesh.h"
+
+namespace softreel {
+
+/// Deformed positions of the points: rest point + weighted displacement of the element's nodes, so that the rest pose
+/// is reproduced exactly. node_positions: deformed, as mesh.nodes.
+std::vector<Vec3> skin_positions(const std::vector<Vec3>& rest_points, const Embedding& embedding, const TetMesh& mesh,
+                                 const std::vector<Vec3>& node_positions, const Threads& threads);
+
+/// Deformed unit normals: cofactor of the deformation gradient times the rest normal. The gradient is averaged to the
+/// nodes by volume and interpolated, so that shading is smooth across elements.
+std::vector<Vec3> skin_normals(const std::vector<Vec3>& rest_normals, const Embedding& embedding, const TetMesh& mesh,
+                               const std::vector<Vec3>& node_positions, const Threads& threads);
+
+}  // namespace softreel

@@ -1,0 +1,35 @@
+/// Linear tetrahedra that fill a body: nodes, elements, the lattice they were cut from, and their boundary.
+#pragma once
+
+#include <vector>
+
+#include "core/base/types.h"
+
+namespace softreel {
+
+/// Where the body-centred cubic lattice of a mesh lies (core/tetmesh/bcc_lattice.h).
+struct LatticeFrame {
+  Vec3 origin = Vec3::Zero();  ///< position of lattice node (0, 0, 0), m
+  double spacing = 0;          ///< cubic cell size = long edge, m
+};
+
+/// A tetrahedral mesh. det[X1-X0, X2-X0, X3-X0] > 0 for every element.
+struct TetMesh {
+  std::vector<Vec3> nodes;  ///< rest positions X, nodes x 3, m
+  std::vector<Tet> tets;    ///< elements x 4
+  LatticeFrame lattice;     ///< nested lattices of the multigrid hierarchy start from this one
+};
+
+/// Signed volume of a tetrahedron, m^3; positive for the project's orientation.
+inline double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return (b - a).cross(c - a).dot(d - a) / 6.0;
+}
+
+/// Faces that belong to one element only, counter-clockwise seen from outside, ordered by element and local face.
+std::vector<Triangle> boundary_faces(const TetMesh& mesh);
+
+/// Number of the piece of each element; elements that share a face are in one piece. Pieces are numbered from 0 in the
+/// order of their first element.
+std::vector<Index> face_connected_pieces(const TetMesh& mesh);
+
+}  // namespace softreel

@@ -1,0 +1,29 @@
+/// From a surface to tetrahedra: sign and distance, lattice, cut, pieces, guarantees; one call for one body.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/log.h"
+#include "core/base/parallel.h"
+#include "core/base/timer.h"
+#include "core/mesh/surface_mesh.h"
+#include "core/tetmesh/tet_mesh.h"
+
+namespace softreel {
+
+/// How fine the tetrahedra are; exactly one of the sizes is set, the other is 0.
+struct TetrahedralizeParams {
+  double edge = 0;        ///< long edge of the lattice, m
+  std::int64_t tets = 0;  ///< wanted number of tetrahedra, met within 5 %
+};
+
+/// Fills a closed surface with tetrahedra by isosurface stuffing of a BCC lattice (Labelle and Shewchuk 2007).
+///
+/// Dihedral angles lie within 10.2 and 164.8 degrees; the boundary is a manifold; every piece is connected through
+/// faces. `name` (the body's) stands in messages. Throws input_error if no volume can be made, or if a part is too thin
+/// for the lattice; repairs are said in `log`, one line each. Stage times: "tetrahedralize/...".
+TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name,
+                       const Threads& threads, const Log& log, StageTimes& times);
+
+}  // namespace softreel

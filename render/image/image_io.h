@@ -1,0 +1,41 @@
+/// Pictures on disk: multichannel float EXR, display PNG; decoding of environment images.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/image/image.h"
+#include "render/scene/light.h"
+
+namespace softreel {
+
+/// How scene-linear radiance becomes a display picture.
+enum class ViewTransform {
+  Standard,  ///< sRGB curve, clipped
+  Filmic     ///< soft shoulder that keeps bright colours from clipping, then the sRGB curve
+};
+
+/// 8-bit display pixels, height x width x 3.
+struct DisplayImage {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> pixels;
+};
+
+/// Channels R, G, B times 2^exposure, through the view transform, rounded to 8 bits (no dithering: equal frames are
+/// equal bits).
+DisplayImage to_display(const Image& image, ViewTransform view, float exposure);
+
+/// Bytes of a PNG / EXR file; the caller writes them, so that all files of a run are written in one way. The bytes
+/// depend on the pixels only (no dates, no host names).
+std::vector<std::uint8_t> encode_png(const DisplayImage& image);
+std::vector<std::uint8_t> encode_exr(const Image& image);
+
+/// Reads back what the encoders wrote, and any RGB(A) PNG / scan-line EXR. Throws input_error naming the file.
+DisplayImage read_png(const std::string& path);
+Image read_exr(const std::string& path);
+
+/// An environment from EXR, HDR, PNG or JPEG (the last two through the inverse sRGB curve). Throws input_error.
+EnvironmentImage read_environment(const std::string& path);
+
+}  // namespace softreel

@@ -1,0 +1,26 @@
+/// A quick lit picture of a Scene by rasterisation; EGL where it works, a null back end for tests of its callers.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/image/image_io.h"
+#include "render/scene/scene.h"
+
+namespace softreel {
+
+class Preview {
+ public:
+  virtual ~Preview() = default;
+  /// The scene at the closing of the shutter, seen by the same camera, lit by its lights without shadows.
+  virtual DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure) = 0;
+  /// "EGL 1.5, Mesa llvmpipe ..." for the report.
+  virtual std::string description() const = 0;
+};
+
+/// Opens EGL without a display (surfaceless). Throws work_error (exit 1) saying what failed and what to install.
+std::unique_ptr<Preview> make_egl_preview();
+/// Draws nothing: pictures of the background colour.
+std::unique_ptr<Preview> make_null_preview();
+
+}  // namespace softreel

@@ -1,0 +1,17 @@
+# Build type, language, options.
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, RelWithDebInfo, Debug" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+option(SOFTREEL_BUILD_TESTS "build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(SOFTREEL_BUILD_BENCHMARKS "build tests/benchmark" OFF)
+option(SOFTREEL_WERROR "warnings are errors" OFF)
+set(SOFTREEL_SANITIZE "" CACHE STRING "sanitizers, for example address,undefined")
+foreach(part EMBREE EGL OPENVDB ASSIMP)
+  set(SOFTREEL_WITH_${part} AUTO CACHE STRING "AUTO: on if found; ON: an error if not found; OFF")
+  set_property(CACHE SOFTREEL_WITH_${part} PROPERTY STRINGS AUTO ON OFF)
+endforeach()

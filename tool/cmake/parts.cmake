@@ -1,0 +1,60 @@
+# The optional parts and the packages behind them. Each part becomes a target softreel_part_NAME (empty when off) that
+# carries the definition SOFTREEL_WITH_NAME=0|1.
+set(SOFTREEL_PART_TABLE "")
+
+# softreel_part(NAME PACKAGE TARGETS...): decides by SOFTREEL_WITH_NAME and by whether PACKAGE was found.
+function(softreel_part name found package)
+  set(wanted "${SOFTREEL_WITH_${name}}")
+  add_library(softreel_part_${name} INTERFACE)
+  if(wanted STREQUAL "ON" AND NOT found)
+    message(FATAL_ERROR "SOFTREEL_WITH_${name} is ON but ${package} was not found. "
+                        "Install it (tool/packages.txt names the package) or set SOFTREEL_WITH_${name}=OFF.")
+  endif()
+  if(found AND NOT wanted STREQUAL "OFF")
+    set(value 1)
+    target_link_libraries(softreel_part_${name} INTERFACE ${ARGN})
+  else()
+    set(value 0)
+  endif()
+  target_compile_definitions(softreel_part_${name} INTERFACE SOFTREEL_WITH_${name}=${value})
+  set(SOFTREEL_HAS_${name} ${value} PARENT_SCOPE)
+  set(SOFTREEL_PART_TABLE "${SOFTREEL_PART_TABLE}\n  ${name}: ${value}  (${package}, asked: ${wanted})" PARENT_SCOPE)
+endfunction()
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(ZLIB REQUIRED)
+
+if(NOT SOFTREEL_WITH_ASSIMP STREQUAL "OFF")
+  find_package(assimp QUIET)
+endif()
+softreel_part(ASSIMP "${assimp_FOUND}" "assimp ${assimp_VERSION}" assimp::assimp)
+
+if(NOT SOFTREEL_WITH_OPENVDB STREQUAL "OFF")
+  # Debian ships a Find module only, in a folder of the library.
+  list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
+  set(CMAKE_FIND_PACKAGE_WARN_DEPRECATED OFF)
+  find_package(OpenVDB QUIET)
+endif()
+softreel_part(OPENVDB "${OpenVDB_FOUND}" "OpenVDB ${OpenVDB_VERSION}" OpenVDB::openvdb)
+
+if(NOT SOFTREEL_WITH_EMBREE STREQUAL "OFF")
+  find_package(embree 3 QUIET)
+endif()
+softreel_part(EMBREE "${embree_FOUND}" "Embree ${embree_VERSION}" embree)
+
+if(NOT SOFTREEL_WITH_EGL STREQUAL "OFF")
+  find_package(OpenGL QUIET COMPONENTS EGL)
+  find_library(SOFTREEL_EPOXY epoxy)
+  find_path(SOFTREEL_EPOXY_INCLUDE epoxy/egl.h)
+  if(OpenGL_EGL_FOUND AND SOFTREEL_EPOXY AND SOFTREEL_EPOXY_INCLUDE)
+    set(egl_found TRUE)
+  endif()
+endif()
+softreel_part(EGL "${egl_found}" "EGL and epoxy" OpenGL::EGL "${SOFTREEL_EPOXY}")
+
+function(softreel_print_parts)
+  message(STATUS "softreel ${PROJECT_VERSION}: ${CMAKE_BUILD_TYPE}, tests ${SOFTREEL_BUILD_TESTS}, benchmarks "
+                 "${SOFTREEL_BUILD_BENCHMARKS}, sanitizers '${SOFTREEL_SANITIZE}'; parts:${SOFTREEL_PART_TABLE}")
+endfunction()

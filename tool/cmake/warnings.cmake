@@ -1,0 +1,15 @@
+# How every source of softreel is compiled; linked PRIVATE by every target.
+add_library(softreel_warnings INTERFACE)
+target_compile_options(softreel_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
+if(SOFTREEL_WERROR)
+  target_compile_options(softreel_warnings INTERFACE -Werror)
+endif()
+
+# One baseline for all machines, and no contraction behind our back: equal bits everywhere (design sec. 4.6).
+add_library(softreel_numerics INTERFACE)
+target_compile_options(softreel_numerics INTERFACE -march=x86-64-v3 -mtune=generic -ffp-contract=off)
+if(SOFTREEL_SANITIZE)
+  target_compile_options(softreel_numerics INTERFACE -fsanitize=${SOFTREEL_SANITIZE} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=undefined)
+  target_link_options(softreel_numerics INTERFACE -fsanitize=${SOFTREEL_SANITIZE})
+endif()

@@ -1,0 +1,150 @@
+/// A shot as its file says it: plain values, every field checked, nothing loaded yet.
+///
+/// tool/shot/schema holds the one table of fields that reads, checks and documents these structs.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/constraints/keys.h"
+#include "core/constraints/selection.h"
+#include "core/dynamics/simulator.h"
+#include "core/elasticity/material.h"
+#include "render/image/image_io.h"
+#include "render/pathtrace/path_tracer.h"
+#include "render/scene/scene.h"
+
+namespace softreel {
+
+/// Where a value was written: a file with line and column, or "--set" with line 0.
+struct Origin {
+  std::string file;
+  int line = 0, column = 0;
+};
+
+/// "FILE:LINE:COLUMN", or the file alone where there is no line.
+std::string to_string(const Origin& origin);
+
+enum class StartState { Rest, Equilibrium };
+enum class SimulationMode { Dynamic, Static };
+enum class UpAxis { X, Y, Z };
+
+struct ShotSettings {
+  std::string name;  ///< names the files of the output; default: the shot file's stem
+  double fps = 24;
+  int first_frame = 1, last_frame = 96;
+  int preroll = 0;  ///< frames simulated before the first, not rendered; constraints hold their first values
+  StartState start = StartState::Rest;
+  SimulationMode mode = SimulationMode::Dynamic;
+  bool independent = false;  ///< statics: every frame starts from rest
+};
+
+/// Physical and visible properties under one name.
+struct MaterialSettings {
+  ElementMaterial physics;
+  Appearance appearance;
+};
+
+struct RegionSettings {
+  Selection select;
+  std::optional<std::string> material;  ///< name of a material, or
+  std::optional<double> stiffness;      ///< factor on the body's Young's modulus
+  Origin origin;
+};
+
+struct PinSettings {
+  Selection select;
+  Track<Transform> keys;     ///< at least one key (none in the file: one that moves nothing)
+  bool pivot_given = false;  ///< false: the centroid of the selected points is the pivot of every key
+  std::vector<FrameRange> active;
+  Origin origin;
+};
+
+struct PullSettings {
+  Selection select;
+  Track<Transform> keys;
+  bool pivot_given = false;
+  Track<double> stiffness;  ///< N/m, of all springs together
+  double falloff = 0;       ///< m; weights fall smoothly to 0 at this distance from the selection's centre; 0: equal
+  double max_force = 0;     ///< N; 0: no limit
+  std::vector<FrameRange> active;
+  Origin origin;
+};
+
+struct BodySettings {
+  std::string name;
+  std::string mesh;  ///< resolved path
+  UpAxis up = UpAxis::Y;
+  double fit = 0;                  ///< height in m, stood on the ground; 0: as in the file
+  double scale = 1;                ///< factor on the file's numbers where there is no fit
+  Vec3 translate = Vec3::Zero();   ///< m
+  Vec3 rotate_deg = Vec3::Zero();  ///< about x, then y, then z
+  std::string material;            ///< name
+  double edge = 0;                 ///< m; or
+  std::int64_t tets = 0;           ///< number of tetrahedra; one of the two is set
+  std::vector<RegionSettings> regions;
+  std::vector<PinSettings> pins;
+  std::vector<PullSettings> pulls;
+  Origin origin;       ///< of the table
+  Origin mesh_origin;  ///< of the mesh field
+};
+
+enum class CameraMode {
+  Frame,  ///< frames all bodies at rest, from azimuth and elevation
+  Place   ///< keyed position and target
+};
+
+struct CameraSettings {
+  CameraMode mode = CameraMode::Frame;
+  double azimuth_deg = 30;  ///< about the vertical; 0 looks along -z (from the front)
+  double elevation_deg = 12;
+  double margin = 1.35;           ///< size of the picture over that of the bodies
+  Vec3 shift = Vec3::Zero();      ///< of the target, in heights of the bodies' box
+  Track<Vec3> position, target;   ///< Place
+  Track<double> focal_length_mm;  ///< at least one key
+  Track<double> focus_distance;   ///< empty: at the target
+  double sensor_width_mm = 36;
+  double f_number = 0;
+};
+
+struct RenderSettings {
+  RenderParams params;
+  double shutter = 0;     ///< share of a frame that the shutter is open, ending at the frame; 0: no motion blur
+  int blur_segments = 2;  ///< straight pieces of each point's path while the shutter is open
+};
+
+struct OutputSettings {
+  std::string directory = "out";  ///< relative to the working directory
+  ViewTransform view = ViewTransform::Filmic;
+  double exposure = 0;  ///< stops
+  bool png = true, exr = false, movie = true;
+};
+
+struct GoldenSettings {
+  std::vector<int> frames;  ///< empty: first, middle and last
+  double threshold = 0.02;  ///< largest allowed block error
+};
+
+struct Shot {
+  std::string path;  ///< the file as given
+  ShotSettings settings;
+  std::vector<BodySettings> bodies;  ///< in the order of the file
+  std::map<std::string, MaterialSettings> materials;
+  SolverParams solver;
+  int threads = 0;  ///< 0: all processors
+  Vec3 gravity = Vec3(0, -9.81, 0);
+  CameraSettings camera;
+  std::vector<AreaLight> area_lights;
+  std::vector<SunLight> suns;
+  Environment environment;        ///< its image is not loaded yet
+  std::string environment_image;  ///< resolved path; empty: gradient
+  Origin environment_origin;
+  std::optional<Ground> ground;
+  RenderSettings render;
+  OutputSettings output;
+  GoldenSettings golden;
+};
+
+}  // namespace softreel

@@ -1,0 +1,28 @@
+/// Reads and checks a shot: its file, the presets it uses, and --set.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tool/shot/shot.h"
+
+namespace softreel {
+
+/// One --set PATH=VALUE of the command line. `body.FIELD` addresses the only body of a shot.
+struct Override {
+  std::string path;
+  std::string value;  ///< TOML; a bare word that is no TOML value is taken as a string
+};
+
+/// Splits "path=value". Throws input_error if there is no '='.
+Override parse_override(const std::string& text);
+
+/// Reads a shot; presets named in `use` come first, then the file's own values, then the overrides. Paths in a file are
+/// relative to it, paths in overrides to the working directory. Throws input_error with file, line and column, the
+/// value, what is accepted, and the nearest known name for unknown ones.
+Shot load_shot(const std::string& path, const std::vector<Override>& overrides);
+
+/// The shot as TOML with every field written out: loading it gives the same shot.
+std::string to_toml(const Shot& shot);
+
+}  // namespace softreel
