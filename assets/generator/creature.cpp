@@ -1,0 +1,170 @@
+#include <cmath>
+#include <memory>
+
+#include "assets/generator/distance.h"
+#include "assets/generator/sculpture.h"
+
+namespace softreel::sculpt {
+
+namespace {
+
+/// The baby dragon, about 1 m tall, feet on y = 0, facing +z. Nothing that sticks out is thinner than 0.07 m.
+class Creature {
+ public:
+  double operator()(const Vec3& p) const;
+
+  double head(const Vec3& p) const;
+  double tail(const Vec3& p) const { return tail_(p); }
+  double arms(const Vec3& p) const { return std::min(left_arm(p), right_arm(p)); }
+  static double eye(const Vec3& p) { return sphere(mirrored(to_head(p)), kEye, kEyeRadius); }
+  static Vec3 to_head(const Vec3& p) { return turned(2, -6, 5).transpose() * (p - kNeck) + kNeck; }
+
+ private:
+  static inline const Vec3 kNeck{0, 0.60, 0.02}, kEye{0.100, 0.805, 0.135};
+  static constexpr double kEyeRadius = 0.066;
+
+  double feet(const Vec3& p) const;
+  double trunk(const Vec3& p) const;
+  double left_arm(const Vec3& p) const;
+  double right_arm(const Vec3& p) const;
+  double crest(const Vec3& p) const;
+  double skull(const Vec3& q) const;
+  double ear(const Vec3& q) const;
+  double with_face(double d, const Vec3& q) const;
+  double with_eyes(double d, const Vec3& q) const;
+
+  Limb leg_{{{{0.150, 0.06, 0.01}, 0.085}, {{0.150, 0.15, 0.0}, 0.090}, {{0.12, 0.27, -0.01}, 0.125}}};
+  Limb neck_{{{{0, 0.46, -0.01}, 0.115}, {{0, 0.55, 0.0}, 0.09}, {{0, 0.66, 0.02}, 0.1}}};
+  Limb left_arm_{{{{0.11, 0.505, 0.0}, 0.068}, {{0.215, 0.465, 0.01}, 0.058}, {{0.305, 0.395, 0.055}, 0.052}}};
+  Limb right_arm_{{{{-0.11, 0.505, 0.0}, 0.068}, {{-0.21, 0.48, 0.02}, 0.058}, {{-0.295, 0.55, 0.075}, 0.052}}};
+  Limb tail_{{{{0, 0.28, -0.08}, 0.135},
+              {{-0.02, 0.17, -0.23}, 0.105},
+              {{-0.10, 0.125, -0.36}, 0.080},
+              {{-0.23, 0.16, -0.42}, 0.062},
+              {{-0.32, 0.27, -0.39}, 0.050}}};
+  Limb smile_{{{{-0.125, 0.700, 0.190}, 0.007},
+               {{-0.085, 0.668, 0.250}, 0.012},
+               {{0.0, 0.655, 0.290}, 0.013},
+               {{0.085, 0.668, 0.250}, 0.012},
+               {{0.125, 0.700, 0.190}, 0.007}}};
+};
+
+double Creature::feet(const Vec3& p) const {
+  const Vec3 q = mirrored(p);
+  double d = ellipsoid(q, {0.155, 0.05, 0.05}, {0.095, 0.075, 0.125}, turned(0, 12, 0));
+  for (int toe = -1; toe <= 1; ++toe) {
+    const Vec3 center(0.178 + 0.062 * toe, 0.04, 0.155 - 0.018 * std::abs(toe) - 0.010 * toe);
+    d = smooth_union(d, ellipsoid(q, center, {0.038, 0.045, 0.055}), 0.02);
+  }
+  d = smooth_union(d, leg_(q), 0.05);
+  return smooth_intersection(d, -p.y(), 0.02);  // flat soles
+}
+
+double Creature::trunk(const Vec3& p) const {
+  double d = ellipsoid(p, {0, 0.33, -0.01}, {0.195, 0.185, 0.17});
+  d = smooth_union(d, ellipsoid(p, {0, 0.47, 0.0}, {0.145, 0.13, 0.12}), 0.12);
+  d = smooth_union(d, ellipsoid(p, {0, 0.33, 0.065}, {0.160, 0.165, 0.13}), 0.04);
+  // Shallow rolls across the belly, fading towards its sides.
+  const double side = p.x() / 0.15, front = (p.z() - 0.08) / 0.05;
+  const double mask = std::max(0.0, 1 - side * side) * std::clamp(front, 0.0, 1.0);
+  const double wave = std::cos((p.y() - 0.30 - 0.5 * p.x() * p.x()) * 2 * 3.14159265358979 / 0.062);
+  return d - 0.005 * mask * mask * wave;
+}
+
+double Creature::left_arm(const Vec3& p) const {
+  double d = smooth_union(left_arm_(p), ellipsoid(p, {0.330, 0.350, 0.08}, {0.055, 0.062, 0.055}), 0.03);
+  const Vec3 finger[] = {{0.300, 0.308, 0.120}, {0.345, 0.292, 0.105}, {0.380, 0.318, 0.080}};
+  for (const Vec3& tip : finger) d = smooth_union(d, sphere(p, tip, 0.034), 0.022);
+  return d;
+}
+
+double Creature::right_arm(const Vec3& p) const {
+  double d = smooth_union(right_arm_(p), ellipsoid(p, {-0.315, 0.60, 0.09}, {0.058, 0.06, 0.05}), 0.03);
+  const Vec3 finger[] = {{-0.270, 0.640, 0.115}, {-0.317, 0.665, 0.105}, {-0.362, 0.640, 0.095}};
+  for (const Vec3& tip : finger) d = smooth_union(d, sphere(p, tip, 0.034), 0.022);
+  return d;
+}
+
+double Creature::crest(const Vec3& p) const {
+  const Station bump[] = {{{0, 0.50, -0.125}, 0.045},
+                          {{0, 0.395, -0.185}, 0.050},
+                          {{-0.005, 0.285, -0.225}, 0.050},
+                          {{-0.06, 0.215, -0.315}, 0.045},
+                          {{-0.165, 0.205, -0.415}, 0.040}};
+  double d = 1e300;
+  for (const Station& s : bump) d = std::min(d, sphere(p, s.position, s.radius));
+  return d;
+}
+
+double Creature::skull(const Vec3& q) const {
+  double d = ellipsoid(q, {0, 0.775, 0.02}, {0.195, 0.165, 0.17});
+  d = smooth_union(d, ellipsoid(mirrored(q), {0.115, 0.695, 0.09}, {0.085, 0.075, 0.085}), 0.08);
+  d = smooth_union(d, ellipsoid(q, {0, 0.70, 0.165}, {0.125, 0.080, 0.115}), 0.07);
+  const Vec3 m = mirrored(q);
+  d = smooth_union(d, round_cone(m, {{0.075, 0.90, 0.0}, 0.045}, {{0.105, 0.985, -0.035}, 0.034}), 0.03);
+  d = smooth_union(d, sphere(q, {0, 0.915, -0.07}, 0.045), 0.03);
+  return smooth_union(d, sphere(q, {0, 0.83, -0.14}, 0.048), 0.03);
+}
+
+double Creature::ear(const Vec3& q) const {
+  const Vec3 m = mirrored(q);
+  const Mat3 axes = turned(0, 12, -20);
+  double d = ellipsoid(m, {0.285, 0.785, -0.01}, {0.155, 0.082, 0.045}, axes);
+  return smooth_difference(d, ellipsoid(m, {0.305, 0.782, 0.047}, {0.105, 0.048, 0.028}, axes), 0.02);
+}
+
+double Creature::with_face(double d, const Vec3& q) const {
+  const Vec3 m = mirrored(q);
+  d = smooth_difference(d, smile_(q), 0.016);
+  d = smooth_union(d, ellipsoid(m, {0.048, 0.745, 0.252}, {0.030, 0.022, 0.026}), 0.02);
+  return smooth_difference(d, sphere(m, {0.050, 0.748, 0.278}, 0.013), 0.01);
+}
+
+double Creature::with_eyes(double d, const Vec3& q) const {
+  const Vec3 m = mirrored(q);
+  const Vec3 look = Vec3(0.22, 0.02, 1.0).normalized();
+  d = smooth_union(d, sphere(m, kEye, kEyeRadius + 0.012), 0.05);  // brow and cheek swell towards the eye
+  d = smooth_difference(d, ellipsoid(m, kEye + 0.075 * look, {0.058, 0.062, 0.05}), 0.02);
+  double ball = sphere(m, kEye, kEyeRadius);
+  ball = smooth_difference(ball, sphere(m, kEye + 1.02 * kEyeRadius * look, 0.030), 0.008);
+  return smooth_union(d, ball, 0.006);
+}
+
+double Creature::head(const Vec3& p) const {
+  const Vec3 q = to_head(p);
+  return with_eyes(with_face(smooth_union(skull(q), ear(q), 0.04), q), q);
+}
+
+double Creature::operator()(const Vec3& p) const {
+  double d = trunk(p);
+  d = smooth_union(d, feet(p), 0.05);
+  d = smooth_union(d, tail_(p), 0.08);
+  d = smooth_union(d, ellipsoid(p, {-0.335, 0.31, -0.375}, {0.060, 0.085, 0.060}), 0.04);
+  d = smooth_union(d, neck_(p), 0.06);
+  d = smooth_union(d, std::min(left_arm(p), right_arm(p)), 0.035);
+  d = smooth_union(d, crest(p), 0.03);
+  return smooth_union(d, head(p), 0.05);
+}
+
+}  // namespace
+
+Sculpture make_creature() {
+  const auto creature = std::make_shared<Creature>();
+  Sculpture s;
+  s.name = "creature";
+  s.distance = [creature](const Vec3& p) { return (*creature)(p); };
+  s.bounds.add({-0.50, -0.04, -0.53});
+  s.bounds.add({0.52, 1.08, 0.36});
+  s.cell = 0.0102;
+  s.parts = {{"feet", [](const Vec3& p) { return p.y() < 0.05; }},
+             {"knees", [](const Vec3& p) { return p.y() > 0.10 && p.y() < 0.20 && p.z() > -0.12; }},
+             {"arms", [creature](const Vec3& p) { return std::abs(p.x()) > 0.17 && creature->arms(p) < 0.01; }},
+             {"tail", [creature](const Vec3& p) { return p.z() < -0.2 && p.y() < 0.42; }},
+             {"head", [creature](const Vec3& p) { return p.y() > 0.6 && creature->head(p) < 0.005; }},
+             {"crown", [](const Vec3& p) { return p.y() > 0.84 && std::abs(p.x()) < 0.2; }},
+             {"ears", [](const Vec3& p) { return std::abs(Creature::to_head(p).x()) > 0.21 && p.y() > 0.68; }},
+             {"eyes", [](const Vec3& p) { return Creature::eye(p) < 0.002; }}};
+  return s;
+}
+
+}  // namespace softreel::sculpt
