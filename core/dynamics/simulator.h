@@ -10,22 +10,13 @@
 #include "core/base/timer.h"
 #include "core/base/types.h"
 #include "core/constraints/constraints.h"
+#include "core/elasticity/elastic_body.h"
 #include "core/elasticity/material.h"
 #include "core/multigrid/multigrid.h"
 #include "core/skinning/embedding.h"
 #include "core/tetmesh/tet_mesh.h"
 
 namespace softreel {
-
-/// Which A the element rotation is extracted from (design 4.2).
-enum class RotationMethod {
-  Consistent,  ///< A = F: the force is the exact gradient of a continuous energy
-  Energy,      ///< A = F S: the paper's eq. (3), safeguarded
-  None         ///< small strain: Q = I
-};
-
-/// How the dilatation stress grows (design 4.3).
-enum class Dilatation { Capped, Linear };
 
 struct SolverParams {
   RotationMethod rotation = RotationMethod::Consistent;
@@ -97,8 +88,10 @@ class Simulator {
   /// Levels of the multigrid hierarchy, for reports.
   std::vector<LevelInfo> levels() const;
 
- private:
+  /// Implementation, core/dynamics/simulator_parts.h.
   struct Parts;
+
+ private:
   std::unique_ptr<Parts> parts_;
 };
 

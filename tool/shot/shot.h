@@ -58,6 +58,7 @@ struct PinSettings {
   Selection select;
   Track<Transform> keys;     ///< at least one key (none in the file: one that moves nothing)
   bool pivot_given = false;  ///< false: the centroid of the selected points is the pivot of every key
+  bool keys_in_box = false;  ///< translate of the keys counts in heights, pivot in coordinates of the placed body's box
   std::vector<FrameRange> active;
   Origin origin;
 };
@@ -66,9 +67,10 @@ struct PullSettings {
   Selection select;
   Track<Transform> keys;
   bool pivot_given = false;
-  Track<double> stiffness;  ///< N/m, of all springs together
-  double falloff = 0;       ///< m; weights fall smoothly to 0 at this distance from the selection's centre; 0: equal
-  double max_force = 0;     ///< N; 0: no limit
+  bool keys_in_box = false;  ///< translate of the keys counts in heights, pivot in coordinates of the placed body's box
+  Track<double> stiffness;   ///< N/m, of all springs together
+  double falloff = 0;        ///< m; weights fall smoothly to 0 at this distance from the selection's centre; 0: equal
+  double max_force = 0;      ///< N; 0: no limit
   std::vector<FrameRange> active;
   Origin origin;
 };
@@ -109,6 +111,23 @@ struct CameraSettings {
   double f_number = 0;
 };
 
+enum class LightKind { Area, Sun };
+
+/// A light in the words of a shot.
+struct LightSettings {
+  LightKind kind = LightKind::Area;
+  Vec3 center = Vec3(0, 4, 0);        ///< area: m
+  Vec3 aim = Vec3::Zero();            ///< area: the point it faces, m
+  Vec2 size = Vec2(1, 1);             ///< area: width and height, m
+  double power = 100;                 ///< area: W; the radiance is color power / (4 area)
+  bool visible = true;                ///< area: to camera rays
+  Vec3 direction = Vec3(-1, -2, -1);  ///< sun: the way its light travels, any length
+  double irradiance = 1;              ///< sun: W/m^2 on a surface that faces it, times color
+  double angle_deg = 0.53;            ///< sun: diameter of its disk
+  Vec3 color = Vec3::Ones();          ///< linear
+  Origin origin;
+};
+
 struct RenderSettings {
   RenderParams params;
   double shutter = 0;     ///< share of a frame that the shutter is open, ending at the frame; 0: no motion blur
@@ -136,10 +155,11 @@ struct Shot {
   int threads = 0;  ///< 0: all processors
   Vec3 gravity = Vec3(0, -9.81, 0);
   CameraSettings camera;
-  std::vector<AreaLight> area_lights;
-  std::vector<SunLight> suns;
-  Environment environment;        ///< its image is not loaded yet
-  std::string environment_image;  ///< resolved path; empty: gradient
+  std::vector<LightSettings> lights;   ///< as the file says them, in its order
+  std::vector<AreaLight> area_lights;  ///< made of `lights`
+  std::vector<SunLight> suns;          ///< made of `lights`
+  Environment environment;             ///< its image is not loaded yet
+  std::string environment_image;       ///< resolved path; empty: gradient
   Origin environment_origin;
   std::optional<Ground> ground;
   RenderSettings render;

@@ -1,0 +1,43 @@
+/// Which nodes pins hold at a frame, and where.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/constraints/constraints.h"
+#include "core/skinning/embedding.h"
+#include "core/tetmesh/tet_mesh.h"
+
+namespace softreel {
+
+/// The nodes that pins hold at one frame.
+struct PinnedNodes {
+  std::vector<std::uint8_t> held;  ///< per node: 1 if a pin holds it
+  std::vector<Vec3> targets;       ///< per node, m; only where held
+  Index count = 0;                 ///< of held nodes
+  std::string conflict;            ///< names two pins that want one node at different places; empty if there are none
+};
+
+/// The pins of a body, by nodes.
+class NodePins {
+ public:
+  /// A pin holds every node of each tetrahedron that carries one of its points, so that the skinned points are exact.
+  NodePins(std::vector<Pin> pins, const Embedding& embedding, const TetMesh& mesh);
+
+  /// Nodes that active pins hold at `frame`. Two pins may share a node where they agree to 1e-9 of the body's size.
+  PinnedNodes at(double frame) const;
+
+  /// The first conflict at a frame where two pins could start to differ: their keys and the ends of their ranges.
+  /// Empty if there is none; between keys `at` still looks.
+  std::string find_conflict() const;
+
+ private:
+  std::vector<Pin> pins_;
+  std::vector<std::vector<Index>> nodes_;  ///< per pin, sorted
+  std::vector<Vec3> rest_positions_;
+  double agreement_ = 0;  ///< m
+};
+
+}  // namespace softreel

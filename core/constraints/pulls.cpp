@@ -1,0 +1,86 @@
+#include "core/constraints/pulls.h"
+
+#include <cmath>
+
+namespace softreel {
+namespace {
+
+/// From the spring's point to its target.
+Vec3 stretch(const Spring& spring, std::span<const Vec3> positions) {
+  Vec3 point = spring.offset;
+  for (std::size_t k = 0; k < 4; ++k) point += spring.weights[k] * positions[static_cast<std::size_t>(spring.nodes[k])];
+  return spring.target - point;
+}
+
+/// Sum of k |d|^2 / 2 without the limit.
+double unlimited_energy(const ActivePull& pull, std::span<const Vec3> positions) {
+  double energy = 0;
+  for (const Spring& spring : pull.springs) energy += 0.5 * spring.stiffness * stretch(spring, positions).squaredNorm();
+  return energy;
+}
+
+Spring make_spring(const Vec3& rest_point, const Tet& tet, const std::array<double, 4>& weights, const TetMesh& mesh) {
+  Spring spring{tet, weights, rest_point, Vec3::Zero(), 0};
+  for (std::size_t k = 0; k < 4; ++k) spring.offset -= weights[k] * mesh.nodes[static_cast<std::size_t>(tet[k])];
+  return spring;
+}
+
+}  // namespace
+
+std::vector<ActivePull> active_pulls(const std::vector<Pull>& pulls, const std::vector<Vec3>& surface_points,
+                                     const Embedding& embedding, const TetMesh& mesh, double frame) {
+  std::vector<ActivePull> active;
+  for (const Pull& pull : pulls) {
+    if (!is_active(pull.active, frame)) continue;
+    const double stiffness = pull.stiffness.at(frame);
+    if (!(stiffness > 0)) continue;
+    const Transform transform = pull.track.at(frame);
+    ActivePull result{{}, 0, pull.max_force};
+    for (std::size_t k = 0; k < pull.points.size(); ++k) {
+      const auto point = static_cast<std::size_t>(pull.points[k]);
+      Spring spring = make_spring(surface_points[point], mesh.tets[static_cast<std::size_t>(embedding.elements[point])],
+                                  embedding.weights[point], mesh);
+      spring.target = transform.apply(surface_points[point]);
+      spring.stiffness = stiffness * pull.weights[k];
+      result.stiffness += spring.stiffness;
+      result.springs.push_back(spring);
+    }
+    active.push_back(std::move(result));
+  }
+  return active;
+}
+
+double pull_factor(const ActivePull& pull, std::span<const Vec3> positions) {
+  if (pull.max_force <= 0) return 1;
+  const double force = std::sqrt(2 * pull.stiffness * unlimited_energy(pull, positions));
+  return force > pull.max_force ? pull.max_force / force : 1.0;
+}
+
+double pull_energy(const ActivePull& pull, std::span<const Vec3> positions) {
+  const double energy = unlimited_energy(pull, positions);
+  const double factor = pull_factor(pull, positions);
+  if (factor == 1) return energy;
+  const double force = pull.max_force / factor;
+  return pull.max_force * (force - 0.5 * pull.max_force) / pull.stiffness;
+}
+
+void add_pull_forces(const ActivePull& pull, std::span<const Vec3> positions, std::span<Vec3> forces) {
+  const double factor = pull_factor(pull, positions);
+  for (const Spring& spring : pull.springs) {
+    const Vec3 force = factor * spring.stiffness * stretch(spring, positions);
+    for (std::size_t k = 0; k < 4; ++k) forces[static_cast<std::size_t>(spring.nodes[k])] += spring.weights[k] * force;
+  }
+}
+
+void add_pull_stiffness(const ActivePull& pull, std::span<const Vec3> positions, double scale, BlockMatrixd& matrix) {
+  const double factor = scale * pull_factor(pull, positions);
+  for (const Spring& spring : pull.springs)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j) {
+        double* block = matrix.block(matrix.pattern.find(spring.nodes[i], spring.nodes[j]));
+        const double value = factor * spring.stiffness * spring.weights[i] * spring.weights[j];
+        for (int c = 0; c < 3; ++c) block[4 * c] += value;
+      }
+}
+
+}  // namespace softreel

@@ -1,0 +1,56 @@
+/// Springs of the pulls that are active at a frame: force, energy and stiffness.
+///
+/// A limited pull (max_force) measures its pull as k d, with k its whole stiffness and d the root mean square distance
+/// of its points, weighted by their stiffness: never less than the length of the summed force, and equal to it where
+/// all points are equally far. Beyond the limit all springs soften by the same factor, max_force / (k d). So the force
+/// has an energy (k d^2 / 2, growing linearly beyond the limit), and the factor at the start of a step times the
+/// stiffness is its secant stiffness, which is never softer than the tangent: the pull stays implicit and never
+/// overshoots.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/constraints/constraints.h"
+#include "core/skinning/embedding.h"
+#include "core/sparse/block_matrix.h"
+#include "core/tetmesh/tet_mesh.h"
+
+namespace softreel {
+
+/// One spring from a surface point, which lies at offset + sum weights[k] x_k, to a target.
+struct Spring {
+  Tet nodes;
+  std::array<double, 4> weights;
+  Vec3 offset;           ///< m; zero for a point inside its element
+  Vec3 target;           ///< m
+  double stiffness = 0;  ///< N/m
+};
+
+/// A pull at one frame.
+struct ActivePull {
+  std::vector<Spring> springs;
+  double stiffness = 0;  ///< N/m, of all springs
+  double max_force = 0;  ///< N; 0: no limit
+};
+
+/// Pulls that are active at `frame` with stiffness above 0.
+std::vector<ActivePull> active_pulls(const std::vector<Pull>& pulls, const std::vector<Vec3>& surface_points,
+                                     const Embedding& embedding, const TetMesh& mesh, double frame);
+
+/// Factor on the stiffness that keeps to max_force, in (0, 1].
+double pull_factor(const ActivePull& pull, std::span<const Vec3> positions);
+
+/// Energy of the springs, J.
+double pull_energy(const ActivePull& pull, std::span<const Vec3> positions);
+
+/// Adds the springs' forces at `positions` to the nodes, N: minus the gradient of pull_energy.
+void add_pull_forces(const ActivePull& pull, std::span<const Vec3> positions, std::span<Vec3> forces);
+
+/// Adds scale * (secant) stiffness, blocks factor k w_i w_j I of each spring's element, to a matrix whose pattern has
+/// them.
+void add_pull_stiffness(const ActivePull& pull, std::span<const Vec3> positions, double scale, BlockMatrixd& matrix);
+
+}  // namespace softreel

@@ -1,0 +1,189 @@
+#include "core/dynamics/simulator.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "core/base/check.h"
+#include "core/base/error.h"
+#include "core/dynamics/simulator_parts.h"
+
+namespace softreel {
+namespace {
+
+std::vector<double> youngs_moduli(const std::vector<ElementMaterial>& materials) {
+  std::vector<double> moduli;
+  moduli.reserve(materials.size());
+  for (const ElementMaterial& material : materials) moduli.push_back(material.youngs_modulus);
+  return moduli;
+}
+
+/// Checks what the simulator divides by, and returns the model.
+BodyModel checked(BodyModel model) {
+  const TetMesh& mesh = model.mesh;
+  CHECK(model.materials.size() == mesh.tets.size());
+  CHECK(model.embedding.elements.size() == model.surface_points.size());
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    const TetNodes rest = nodes_of(mesh.tets[e], mesh.nodes);
+    const double volume = tet_volume(rest[0], rest[1], rest[2], rest[3]);
+    if (volume > 0) continue;
+    throw input_error(
+        fmt::format("{}: tetrahedron {} has volume {} m^3 at rest.\n  Accepted: above 0. Orient its nodes so that "
+                    "det[X1-X0, X2-X0, X3-X0] > 0, or remove it if it is flat.",
+                    model.name, e, volume));
+  }
+  return model;
+}
+
+}  // namespace
+
+Pieces find_pieces(const TetMesh& mesh) {
+  std::vector<Index> parent(mesh.nodes.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](Index i) {
+    while (parent[static_cast<std::size_t>(i)] != i) {
+      Index& up = parent[static_cast<std::size_t>(i)];
+      up = parent[static_cast<std::size_t>(up)];
+      i = up;
+    }
+    return i;
+  };
+  for (const Tet& tet : mesh.tets)
+    for (const Index node : tet) {
+      const Index a = root(tet[0]), b = root(node);
+      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  Pieces pieces{0, std::vector<Index>(mesh.nodes.size())};
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    const Index r = root(static_cast<Index>(i));
+    pieces.of_node[i] = static_cast<std::size_t>(r) == i ? pieces.count++ : pieces.of_node[static_cast<std::size_t>(r)];
+  }
+  return pieces;
+}
+
+Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads,
+                        const Log& its_log, StageTimes& its_times)
+    : model(checked(std::move(body_model))),
+      params(solver_params),
+      threads(its_threads),
+      log(its_log),
+      times(its_times),
+      body(make_elastic_body(model.mesh, model.materials, params.dilatation)),
+      masses(lump_masses(model.mesh, model.materials)),
+      pins(model.pins, model.embedding, model.mesh),
+      pieces(find_pieces(model.mesh)),
+      matrix{stiffness_pattern(model.mesh.tets, static_cast<Index>(model.mesh.nodes.size())), {}},
+      assembler(model.mesh.tets, matrix.pattern),
+      multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern, params.multigrid, threads),
+      stresses(model.mesh.tets.size()) {
+  if (const std::string conflict = pins.find_conflict(); !conflict.empty()) throw input_error(conflict);
+  state.positions = model.mesh.nodes;
+  state.velocities.assign(model.mesh.nodes.size(), Vec3::Zero());
+  state.rotations.assign(model.mesh.tets.size(), Quaternion::Identity());
+}
+
+std::vector<ActivePull> Simulator::Parts::pulls_at(double frame) const {
+  return active_pulls(model.pulls, model.surface_points, model.embedding, model.mesh, frame);
+}
+
+void Simulator::Parts::find_forces(std::span<const Vec3> positions, std::span<const Quaternion> rotations,
+                                   const std::vector<ActivePull>& pulls, std::span<Vec3> forces) {
+  find_stresses(body, positions, rotations, stresses, threads);
+  gather_forces(body, stresses, forces, threads);
+  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += masses.mass[i] * model.gravity;
+  for (const ActivePull& pull : pulls) add_pull_forces(pull, positions, forces);
+}
+
+std::vector<std::uint8_t> Simulator::Parts::held_pieces(const PinnedNodes& pinned,
+                                                        const std::vector<ActivePull>& pulls) const {
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(pieces.count), 0);
+  const auto hold = [&](std::size_t node) { held[static_cast<std::size_t>(pieces.of_node[node])] = 1; };
+  for (std::size_t i = 0; i < nodes(); ++i)
+    if (pinned.held[i] != 0) hold(i);
+  for (const ActivePull& pull : pulls)
+    for (const Spring& spring : pull.springs) hold(static_cast<std::size_t>(spring.nodes[0]));
+  return held;
+}
+
+std::string Simulator::Parts::find_culprit(std::span<const Vec3> positions, std::span<const Vec3> blame) const {
+  const auto describe_element = [&](std::size_t e, const char* what) {
+    const TetNodes rest = nodes_of(body.tets[e], body.rest_positions);
+    const Vec3 center = 0.25 * (rest[0] + rest[1] + rest[2] + rest[3]);
+    return fmt::format("{}: element {} with rest centroid ({:.6g}, {:.6g}, {:.6g}) {}", model.name, e, center.x(),
+                       center.y(), center.z(), what);
+  };
+  std::size_t worst = 0;
+  double greatest = -1;
+  for (std::size_t e = 0; e < body.tets.size(); ++e) {
+    const TetNodes nodes_now = nodes_of(body.tets[e], positions);
+    const Mat3 F = deformation_gradient(body.shapes[e].gradients, nodes_now);
+    if (!F.allFinite()) return describe_element(e, "has a shape that is not finite");
+    if (!std::isfinite(F.squaredNorm())) return describe_element(e, "has a force that is not finite");
+    double size = 0;
+    for (const Index node : body.tets[e]) {
+      const double norm = blame[static_cast<std::size_t>(node)].norm();
+      if (!std::isfinite(norm)) return describe_element(e, "has a force that is not finite");
+      size += norm;
+    }
+    if (size > greatest) {
+      greatest = size;
+      worst = e;
+    }
+  }
+  return describe_element(worst, "has the greatest unbalanced force");
+}
+
+Simulator::Simulator(BodyModel model, const SolverParams& params, const Threads& threads, const Log& log,
+                     StageTimes& times)
+    : parts_(std::make_unique<Parts>(std::move(model), params, threads, log, times)) {}
+
+Simulator::~Simulator() = default;
+
+const BodyModel& Simulator::model() const {
+  return parts_->model;
+}
+
+const SimulationState& Simulator::state() const {
+  return parts_->state;
+}
+
+void Simulator::set_state(SimulationState state) {
+  CHECK(state.positions.size() == parts_->nodes());
+  CHECK(state.velocities.size() == parts_->nodes());
+  CHECK(state.rotations.size() == parts_->body.tets.size());
+  parts_->state = std::move(state);
+}
+
+StepReport Simulator::step(double frame, double seconds) {
+  CHECK(seconds > 0);
+  return parts_->step(frame, seconds);
+}
+
+StepReport Simulator::find_equilibrium(double frame) {
+  return parts_->find_equilibrium(frame);
+}
+
+std::vector<LevelInfo> Simulator::levels() const {
+  return parts_->multigrid.levels();
+}
+
+StateMeasures Simulator::measure() const {
+  const Parts& parts = *parts_;
+  const SimulationState& state = parts.state;
+  StateMeasures measures;
+  for (std::size_t i = 0; i < parts.nodes(); ++i) {
+    const double mass = parts.masses.mass[i];
+    const Vec3 momentum = mass * state.velocities[i];
+    measures.kinetic_energy += 0.5 * momentum.dot(state.velocities[i]);
+    measures.potential_energy -= mass * parts.model.gravity.dot(state.positions[i]);
+    measures.linear_momentum += momentum;
+    measures.angular_momentum += state.positions[i].cross(momentum);
+  }
+  std::vector<Quaternion> rotations = state.rotations;
+  find_rotations(parts.body, parts.params.rotation, state.positions, rotations, parts.threads);
+  measures.elastic_energy = elastic_energy(parts.body, state.positions, rotations, parts.threads);
+  return measures;
+}
+
+}  // namespace softreel

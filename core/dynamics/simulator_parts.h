@@ -1,0 +1,65 @@
+/// What the Simulator is made of; shared by its source files only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/constraints/pins.h"
+#include "core/constraints/pulls.h"
+#include "core/dynamics/simulator.h"
+#include "core/elasticity/assembly.h"
+#include "core/elasticity/elastic_body.h"
+#include "core/elasticity/mass.h"
+
+namespace softreel {
+
+/// Nodes and elements per chunk of loops over a body.
+inline constexpr std::int64_t kDynamicsGrain = 1024;
+
+/// Pieces of a mesh that share no node: each moves on its own.
+struct Pieces {
+  Index count = 0;
+  std::vector<Index> of_node;  ///< per node
+};
+
+Pieces find_pieces(const TetMesh& mesh);
+
+struct Simulator::Parts {
+  Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads, const Log& its_log,
+        StageTimes& its_times);
+
+  BodyModel model;
+  SolverParams params;
+  const Threads& threads;
+  const Log& log;
+  StageTimes& times;
+
+  ElasticBody body;
+  NodalMasses masses;
+  NodePins pins;
+  Pieces pieces;
+  BlockMatrixd matrix;
+  StiffnessAssembler assembler;
+  Multigrid multigrid;
+  SimulationState state;
+
+  // Reused from step to step; no result depends on what they held.
+  StiffnessTerms terms;
+  std::vector<Mat3> stresses;
+
+  std::size_t nodes() const { return model.mesh.nodes.size(); }
+
+  std::vector<ActivePull> pulls_at(double frame) const;
+  /// Gravity, elasticity and pulls on the nodes, N.
+  void find_forces(std::span<const Vec3> positions, std::span<const Quaternion> rotations,
+                   const std::vector<ActivePull>& pulls, std::span<Vec3> forces);
+  /// 1 per piece that a pin or pull holds.
+  std::vector<std::uint8_t> held_pieces(const PinnedNodes& pinned, const std::vector<ActivePull>& pulls) const;
+  /// Names the first element whose shape or force is not a number, or else the node with the greatest entry of `blame`.
+  std::string find_culprit(std::span<const Vec3> positions, std::span<const Vec3> blame) const;
+
+  StepReport step(double frame, double seconds);
+  StepReport find_equilibrium(double frame);
+};
+
+}  // namespace softreel

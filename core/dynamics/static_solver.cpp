@@ -1,0 +1,233 @@
+#include "core/dynamics/static_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/dynamics/linear_system.h"
+
+namespace softreel {
+namespace {
+
+constexpr double kArmijo = 1e-4;  ///< share of the promised decrease of energy that a step must reach
+constexpr int kHalvings = 16;     ///< of a step in the line search
+constexpr double kWorstLinearTolerance = 0.1;
+constexpr double kBestLinearTolerance = 1e-10;
+/// Stiffness against rigid motion of pieces without a pin, relative to the mean stiffness of a node: far below the
+/// softest deformation of any mesh that fits in memory, far above round-off.
+constexpr double kRigidShift = 1e-7;
+
+double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+bool is_positive(double x) {
+  return x > 0;  // false for not a number
+}
+
+/// P-wave modulus: the greatest stiffness of the law.
+double greatest_modulus(const ElasticLaw& law) {
+  return law.lambda + 2 * law.mu;
+}
+
+/// Mass proportional, so that a free piece keeps its centre of mass exactly; nothing on pieces that a pin holds, which
+/// holds a whole tetrahedron and with it every rigid motion.
+std::vector<double> rigid_shifts(const Simulator::Parts& parts, std::span<const std::uint8_t> held) {
+  std::vector<std::uint8_t> fixed(static_cast<std::size_t>(parts.pieces.count), 0);
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (held[i] != 0) fixed[static_cast<std::size_t>(parts.pieces.of_node[i])] = 1;
+  double stiffness = 0, mass = 0;
+  for (std::size_t e = 0; e < parts.body.tets.size(); ++e) {
+    const ElementShape& shape = parts.body.shapes[e];
+    stiffness += shape.volume * greatest_modulus(parts.body.laws[e]) * shape.gradients.squaredNorm();
+  }
+  for (const double m : parts.masses.mass) mass += m;
+  std::vector<double> shifts(held.size(), 0);
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (fixed[static_cast<std::size_t>(parts.pieces.of_node[i])] == 0)
+      shifts[i] = kRigidShift * stiffness / mass * parts.masses.mass[i];
+  return shifts;
+}
+
+}  // namespace
+
+StaticSolver::StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t> held,
+                           const std::vector<ActivePull>& pulls)
+    : parts_(parts),
+      held_(held),
+      pulls_(pulls),
+      shares_(parts.body.tets.size(), 1.0),
+      node_terms_(rigid_shifts(parts, held)) {}
+
+void StaticSolver::evaluate(StaticState& state) {
+  {
+    const ScopedStage stage(parts_.times, "simulate/rotate");
+    find_rotations(parts_.body, parts_.params.rotation, state.positions, state.rotations, parts_.threads);
+  }
+  const ScopedStage stage(parts_.times, "simulate/assemble");
+  state.forces.resize(state.positions.size());
+  parts_.find_forces(state.positions, state.rotations, pulls_, state.forces);
+  const double elastic = elastic_energy(parts_.body, state.positions, state.rotations, parts_.threads);
+  double weight = 0, terms = std::abs(elastic);
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    const double part = parts_.masses.mass[i] * parts_.model.gravity.dot(state.positions[i]);
+    weight += part;
+    terms += std::abs(part);
+    if (held_[i] != 0) state.forces[i].setZero();
+  }
+  state.energy = elastic - weight;
+  for (const ActivePull& pull : pulls_) state.energy += pull_energy(pull, state.positions);
+  terms += std::abs(state.energy);
+  state.energy_noise = 100 * std::numeric_limits<double>::epsilon() * terms;
+  measure_scales(state);
+  state.residual = std::sqrt(dot(state.forces, state.forces));
+  scale_ = std::max(scale_, state.scale);
+}
+
+void StaticSolver::measure_scales(StaticState& state) const {
+  const ElasticBody& body = parts_.body;
+  std::vector<double> magnitudes(state.positions.size(), 0), errors(state.positions.size(), 0);
+  for (std::size_t e = 0; e < body.tets.size(); ++e) {
+    const ElementShape& shape = body.shapes[e];
+    double strain_error = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+      strain_error += shape.gradients.col(static_cast<Index>(k)).norm() *
+                      state.positions[static_cast<std::size_t>(body.tets[e][k])].norm();
+    strain_error = std::numeric_limits<double>::epsilon() * (strain_error + 4);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto node = static_cast<std::size_t>(body.tets[e][k]);
+      const Vec3 gradient = shape.gradients.col(static_cast<Index>(k));
+      magnitudes[node] += (parts_.stresses[e] * gradient).norm();
+      errors[node] += shape.volume * greatest_modulus(body.laws[e]) * gradient.norm() * strain_error;
+    }
+  }
+  double scale = 0, error = 0;
+  for (std::size_t i = 0; i < magnitudes.size(); ++i) {
+    const double magnitude = magnitudes[i] + parts_.masses.mass[i] * parts_.model.gravity.norm();
+    scale += magnitude * magnitude;
+    error += errors[i] * errors[i];
+  }
+  state.scale = std::sqrt(scale);
+  state.round_off = std::sqrt(error);
+}
+
+void StaticSolver::assemble(const StaticState& state, Curvature curvature) {
+  const ScopedStage stage(parts_.times, "simulate/assemble");
+  if (parts_.params.rotation == RotationMethod::None) curvature = Curvature::None;
+  find_stiffness_terms(parts_.body, state.positions, state.rotations, shares_, curvature, parts_.terms, parts_.threads);
+  parts_.assembler.assemble(parts_.terms, node_terms_, parts_.matrix, parts_.threads);
+  for (const ActivePull& pull : pulls_) add_pull_stiffness(pull, state.positions, 1.0, parts_.matrix);
+}
+
+SolveReport StaticSolver::solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
+                                       std::span<Vec3> change) {
+  const ScopedStage stage(parts_.times, "simulate/solve");
+  const SolveReport report = parts_.multigrid.solve(parts_.matrix, right_side, change, tolerance, 0.1 * state.round_off,
+                                                    parts_.params.max_iterations);
+  linear_iterations_ += report.iterations;
+  return report;
+}
+
+/// Newton's direction by the exact tangent, if it is one of descent; else by its positive part.
+bool StaticSolver::find_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction) {
+  assemble(state, Curvature::PositivePart);
+  eliminate_held(parts_.matrix, held_, parts_.threads);
+  {
+    const ScopedStage stage(parts_.times, "simulate/update");
+    parts_.multigrid.update(parts_.matrix, held_);
+  }
+  for (const Curvature curvature : {Curvature::Signed, Curvature::PositivePart}) {
+    assemble(state, curvature);
+    eliminate_held(parts_.matrix, held_, parts_.threads);
+    std::fill(direction.begin(), direction.end(), Vec3::Zero());
+    const SolveReport report = solve_linear(state, state.forces, tolerance, direction);
+    for (std::size_t i = 0; i < direction.size(); ++i)
+      if (held_[i] != 0) direction[i].setZero();
+    if (report.status != SolveStatus::Breakdown && is_positive(dot(direction, state.forces))) return true;
+  }
+  return false;
+}
+
+bool StaticSolver::improves(const StaticState& from, const StaticState& to, double step, double slope) const {
+  if (!std::isfinite(to.residual) || !std::isfinite(to.energy)) return false;
+  // eq. (3)'s rotation has no energy: there only the residual can tell.
+  if (parts_.params.rotation == RotationMethod::Energy) return to.residual < (1 - kArmijo * step) * from.residual;
+  if (to.energy <= from.energy - kArmijo * step * slope) return true;
+  return to.energy <= from.energy + std::max(from.energy_noise, to.energy_noise) && to.residual < from.residual;
+}
+
+bool StaticSolver::search_line(StaticState& state, std::span<const Vec3> direction) {
+  const double slope = dot(direction, state.forces);
+  double step = 1;
+  for (int halving = 0; halving <= kHalvings; ++halving, step *= 0.5) {
+    StaticState next{state.positions, state.rotations, {}};
+    for (std::size_t i = 0; i < direction.size(); ++i) next.positions[i] += step * direction[i];
+    evaluate(next);
+    if (!improves(state, next, step, slope)) continue;
+    state = std::move(next);
+    return true;
+  }
+  return false;
+}
+
+/// The first iteration that moves held nodes is a full step: the body follows as a linear one would.
+bool StaticSolver::move_held(StaticState& state, std::span<const Vec3> targets) {
+  const std::size_t n = state.positions.size();
+  std::vector<Vec3> moves(n, Vec3::Zero()), right_side(n), change(n, Vec3::Zero());
+  bool moved = false;
+  for (std::size_t i = 0; i < n; ++i)
+    if (held_[i] != 0) {
+      moves[i] = targets[i] - state.positions[i];
+      moved = moved || !moves[i].isZero(0);
+    }
+  if (!moved) return true;
+  assemble(state, Curvature::PositivePart);
+  multiply(parts_.matrix, moves, right_side, parts_.threads);
+  for (std::size_t i = 0; i < n; ++i) {
+    right_side[i] = state.forces[i] - right_side[i];
+    if (held_[i] != 0) right_side[i].setZero();
+  }
+  eliminate_held(parts_.matrix, held_, parts_.threads);
+  {
+    const ScopedStage stage(parts_.times, "simulate/update");
+    parts_.multigrid.update(parts_.matrix, held_);
+  }
+  ++iterations_;
+  if (solve_linear(state, right_side, 1e-3, change).status == SolveStatus::Breakdown) return false;
+  for (std::size_t i = 0; i < n; ++i)
+    state.positions[i] = held_[i] != 0 ? targets[i] : Vec3(state.positions[i] + change[i]);
+  evaluate(state);
+  return std::isfinite(state.residual);
+}
+
+SolveReport StaticSolver::solve(StaticState& state, std::span<const Vec3> targets, double tolerance,
+                                int max_iterations) {
+  SolveReport report;
+  linear_iterations_ = 0;
+  const auto finish = [&](SolveStatus status) {
+    report.status = status;
+    report.iterations = linear_iterations_;
+    report.residual = scale_ > 0 ? state.residual / scale_ : 0.0;
+    return report;
+  };
+  evaluate(state);
+  if (!std::isfinite(state.residual) || !move_held(state, targets)) return finish(SolveStatus::Breakdown);
+  std::vector<Vec3> direction(state.positions.size());
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    if (state.residual <= tolerance * scale_) return finish(SolveStatus::Converged);
+    if (state.residual <= state.round_off) return finish(SolveStatus::RoundOff);
+    ++iterations_;
+    // Looser far from the solution, so that the iteration converges superlinearly but no solve is finer than it helps.
+    const double relative = state.residual / scale_;
+    const double linear =
+        std::clamp(std::max(0.1 * relative, 0.3 * tolerance / relative), kBestLinearTolerance, kWorstLinearTolerance);
+    if (!find_direction(state, linear, direction)) return finish(SolveStatus::Breakdown);
+    if (!search_line(state, direction))
+      return finish(state.residual <= 100 * state.round_off ? SolveStatus::RoundOff : SolveStatus::Breakdown);
+  }
+  return finish(state.residual <= tolerance * scale_ ? SolveStatus::Converged : SolveStatus::MaxIterations);
+}
+
+}  // namespace softreel

@@ -1,0 +1,58 @@
+/// Newton's method for the static equilibrium of a body whose held nodes are where they are (design 4.4).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/dynamics/simulator_parts.h"
+
+namespace softreel {
+
+/// A state on the way to equilibrium, with all that the iteration compares.
+struct StaticState {
+  std::vector<Vec3> positions;
+  std::vector<Quaternion> rotations;
+  std::vector<Vec3> forces;  ///< unbalanced, N; zero on held nodes
+  double energy = 0;         ///< elastic, gravity and pulls, J
+  double energy_noise = 0;   ///< round-off of energy, J
+  double residual = 0;       ///< norm of forces
+  double scale = 0;          ///< norm over nodes of the summed magnitudes of the forces that balance there
+  double round_off = 0;      ///< residual that the rounding of positions alone explains
+};
+
+/// One search for equilibrium under fixed constraints.
+class StaticSolver {
+ public:
+  /// held: per node; pulls: at the frame. Everything is kept by reference.
+  StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t> held, const std::vector<ActivePull>& pulls);
+
+  /// Moves the held nodes of `start` to `targets` by one full step of the linearised body, then iterates until
+  /// |forces| <= tolerance * scale or round-off. The result is in `state`, converged or not.
+  SolveReport solve(StaticState& state, std::span<const Vec3> targets, double tolerance, int max_iterations);
+
+  /// Fills everything of a state but positions (rotations: guesses in, results out).
+  void evaluate(StaticState& state);
+
+  int iterations() const { return iterations_; }  ///< Newton iterations so far
+
+ private:
+  void assemble(const StaticState& state, Curvature curvature);
+  SolveReport solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
+                           std::span<Vec3> change);
+  bool find_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction);
+  bool search_line(StaticState& state, std::span<const Vec3> direction);
+  bool move_held(StaticState& state, std::span<const Vec3> targets);
+  bool improves(const StaticState& from, const StaticState& to, double step, double slope) const;
+  void measure_scales(StaticState& state) const;
+
+  Simulator::Parts& parts_;
+  std::span<const std::uint8_t> held_;
+  const std::vector<ActivePull>& pulls_;
+  std::vector<double> shares_;      ///< 1 per element
+  std::vector<double> node_terms_;  ///< holds the rigid motions of pieces without a pin
+  double scale_ = 0;                ///< greatest scale so far: a body that relaxes to rest has none left at the end
+  int iterations_ = 0;
+  int linear_iterations_ = 0;
+};
+
+}  // namespace softreel

@@ -1,0 +1,71 @@
+/// All elements of a body at once: rotations, forces and energy of a deformed state.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/types.h"
+#include "core/elasticity/element.h"
+#include "core/elasticity/material.h"
+#include "core/tetmesh/tet_mesh.h"
+
+namespace softreel {
+
+/// Which A the element rotation is extracted from (design 4.2).
+enum class RotationMethod {
+  Consistent,  ///< A = F: the force is the exact gradient of a continuous energy
+  Energy,      ///< A = F S: the paper's eq. (3), safeguarded
+  None         ///< small strain: Q = I
+};
+
+/// How the dilatation stress grows (design 4.3).
+enum class Dilatation { Capped, Linear };
+
+/// The elements that have a node, for gathering: those of node i are entries [offsets[i], offsets[i + 1]), ascending;
+/// each entry is 4 * element + position of the node in it.
+struct NodeElements {
+  std::vector<std::int64_t> offsets;
+  std::vector<std::int64_t> entries;
+};
+
+NodeElements gather_node_elements(const std::vector<Tet>& tets, Index nodes);
+
+/// Rest shapes and laws of the elements; immutable during a run.
+struct ElasticBody {
+  std::vector<Vec3> rest_positions;  ///< X, nodes x 3, m
+  std::vector<Tet> tets;
+  std::vector<ElementShape> shapes;  ///< per element
+  std::vector<ElasticLaw> laws;      ///< per element
+  NodeElements node_elements;
+};
+
+/// The mesh with its materials (one per element). Volumes must be positive.
+ElasticBody make_elastic_body(const TetMesh& mesh, const std::vector<ElementMaterial>& materials,
+                              Dilatation dilatation);
+
+/// Nodes of element e.
+inline TetNodes nodes_of(const Tet& tet, std::span<const Vec3> positions) {
+  const auto at = [&](std::size_t k) { return positions[static_cast<std::size_t>(tet[k])]; };
+  return {at(0), at(1), at(2), at(3)};
+}
+
+/// Extracts every element's rotation at `positions` (stage "rotate"). rotations: guesses in, results out.
+void find_rotations(const ElasticBody& body, RotationMethod method, std::span<const Vec3> positions,
+                    std::span<Quaternion> rotations, const Threads& threads);
+
+/// Weighted first Piola stress V Q sigma of each element, N m.
+void find_stresses(const ElasticBody& body, std::span<const Vec3> positions, std::span<const Quaternion> rotations,
+                   std::span<Mat3> stresses, const Threads& threads);
+
+/// Elastic forces on the nodes, -sum over their elements of stress * b_i, N: minus the gradient of elastic_energy where
+/// the rotations are the consistent ones. They sum to zero. Gathered per node, in the order of elements.
+void gather_forces(const ElasticBody& body, std::span<const Mat3> stresses, std::span<Vec3> forces,
+                   const Threads& threads);
+
+/// Sum of V times the energy density over all elements, J.
+double elastic_energy(const ElasticBody& body, std::span<const Vec3> positions, std::span<const Quaternion> rotations,
+                      const Threads& threads);
+
+}  // namespace softreel

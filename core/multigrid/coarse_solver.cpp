@@ -1,0 +1,152 @@
+#include "core/multigrid/coarse_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/check.h"
+
+namespace softreel {
+namespace {
+
+Index degree(const BlockPattern& pattern, Index i) {
+  const auto row = static_cast<std::size_t>(i);
+  return static_cast<Index>(pattern.row_offsets[row + 1] - pattern.row_offsets[row]);
+}
+
+/// Nodes in breadth-first order from `start`, neighbours by ascending degree; marks them in `visited`.
+std::vector<Index> breadth_first(const BlockPattern& pattern, Index start, std::vector<bool>& visited) {
+  std::vector<Index> order{start}, neighbors;
+  visited[static_cast<std::size_t>(start)] = true;
+  for (std::size_t head = 0; head < order.size(); ++head) {
+    const auto row = static_cast<std::size_t>(order[head]);
+    neighbors.clear();
+    for (std::int64_t b = pattern.row_offsets[row]; b < pattern.row_offsets[row + 1]; ++b) {
+      const Index column = pattern.column_indices[static_cast<std::size_t>(b)];
+      if (visited[static_cast<std::size_t>(column)]) continue;
+      visited[static_cast<std::size_t>(column)] = true;
+      neighbors.push_back(column);
+    }
+    std::stable_sort(neighbors.begin(), neighbors.end(),
+                     [&](Index a, Index b) { return degree(pattern, a) < degree(pattern, b); });
+    order.insert(order.end(), neighbors.begin(), neighbors.end());
+  }
+  return order;
+}
+
+/// Reverse Cuthill-McKee, each piece from the far end of a first search.
+std::vector<Index> elimination_order(const BlockPattern& pattern) {
+  std::vector<bool> visited(static_cast<std::size_t>(pattern.rows()), false);
+  std::vector<Index> order;
+  for (Index i = 0; i < pattern.rows(); ++i) {
+    if (visited[static_cast<std::size_t>(i)]) continue;
+    std::vector<bool> probe = visited;
+    const Index far_end = breadth_first(pattern, i, probe).back();
+    const std::vector<Index> piece = breadth_first(pattern, far_end, visited);
+    order.insert(order.end(), piece.begin(), piece.end());
+  }
+  std::reverse(order.begin(), order.end());
+  return order;
+}
+
+/// Dot product in 8 lanes: the order of summation is fixed by the length alone.
+double dot(const double* a, const double* b, std::int64_t n) {
+  using Lanes = Eigen::Array<double, 8, 1>;
+  Lanes sum = Lanes::Zero();
+  std::int64_t k = 0;
+  for (; k + 8 <= n; k += 8) sum += Eigen::Map<const Lanes>(a + k) * Eigen::Map<const Lanes>(b + k);
+  double tail = 0;
+  for (; k < n; ++k) tail += a[k] * b[k];
+  return sum.sum() + tail;
+}
+
+}  // namespace
+
+CoarseSolver::CoarseSolver(const BlockPattern& pattern) {
+  const std::vector<Index> order = elimination_order(pattern);
+  place_.resize(order.size());
+  for (std::size_t p = 0; p < order.size(); ++p) place_[static_cast<std::size_t>(order[p])] = static_cast<Index>(p);
+  std::int64_t size = 0;
+  for (std::size_t p = 0; p < order.size(); ++p) {
+    const auto row = static_cast<std::size_t>(order[p]);
+    auto first = static_cast<Index>(p);
+    for (std::int64_t b = pattern.row_offsets[row]; b < pattern.row_offsets[row + 1]; ++b)
+      first = std::min(first, place_[static_cast<std::size_t>(pattern.column_indices[static_cast<std::size_t>(b)])]);
+    for (Index k = 0; k < 3; ++k) {
+      first_.push_back(3 * first);
+      row_offsets_.push_back(size);
+      size += 3 * static_cast<Index>(p) + k - 3 * first + 1;
+    }
+  }
+  factor_.resize(static_cast<std::size_t>(size));
+  inverse_pivots_.resize(first_.size());
+  work_.resize(first_.size());
+}
+
+template <typename Scalar>
+bool CoarseSolver::factor(const BlockMatrix<Scalar>& matrix, double noise) {
+  const BlockPattern& pattern = matrix.pattern;
+  CHECK(static_cast<std::size_t>(pattern.rows()) == place_.size());
+  std::fill(factor_.begin(), factor_.end(), 0.0);
+  for (std::size_t node = 0; node < place_.size(); ++node)
+    for (std::int64_t b = pattern.row_offsets[node]; b < pattern.row_offsets[node + 1]; ++b) {
+      const Index p = place_[node],
+                  q = place_[static_cast<std::size_t>(pattern.column_indices[static_cast<std::size_t>(b)])];
+      for (Index r = 0; r < 3; ++r)
+        for (Index c = 0; c < 3; ++c)
+          if (3 * q + c <= 3 * p + r)
+            row(static_cast<std::size_t>(3 * p + r))[3 * q + c] = static_cast<double>(matrix.block(b)[3 * r + c]);
+    }
+  bool sound = true;
+  for (std::size_t i = 0; i < first_.size(); ++i) sound = factor_row(i, noise) && sound;
+  return sound;
+}
+
+bool CoarseSolver::factor_row(std::size_t i, double noise) {
+  double* const L_i = row(i);
+  for (Index j = first_[i]; j < static_cast<Index>(i); ++j) {
+    const auto column = static_cast<std::size_t>(j);
+    const Index begin = std::max(first_[i], first_[column]);
+    L_i[j] = (L_i[j] - dot(L_i + begin, row(column) + begin, j - begin)) * inverse_pivots_[column];
+  }
+  const double diagonal = L_i[i];
+  const auto width = static_cast<std::int64_t>(i) - first_[i];
+  const double pivot = diagonal - dot(L_i + first_[i], L_i + first_[i], width);
+  const bool independent = pivot > noise * diagonal;
+  L_i[i] = independent ? std::sqrt(pivot) : 0.0;
+  inverse_pivots_[i] = independent ? 1.0 / L_i[i] : 0.0;
+  // Noise may be negative; anything worse says that the matrix is not semidefinite.
+  return std::isfinite(pivot) && diagonal >= 0 && pivot >= -100 * noise * diagonal;
+}
+
+template <typename Scalar>
+void CoarseSolver::solve(const NodeVector<Scalar>& b, NodeVector<Scalar>& x) {
+  double* const y = work_.data();
+  for (std::size_t node = 0; node < place_.size(); ++node)
+    for (std::size_t c = 0; c < 3; ++c)
+      y[3 * static_cast<std::size_t>(place_[node]) + c] = static_cast<double>(b[4 * node + c]);
+  for (std::size_t i = 0; i < first_.size(); ++i) {
+    const Index begin = first_[i];
+    y[i] = (y[i] - dot(row(i) + begin, y + begin, static_cast<Index>(i) - begin)) * inverse_pivots_[i];
+  }
+  for (std::size_t i = first_.size(); i-- > 0;) {
+    y[i] *= inverse_pivots_[i];
+    const double* const L_i = row(i);
+    for (auto j = static_cast<std::size_t>(first_[i]); j < i; ++j) y[j] -= L_i[j] * y[i];
+  }
+  for (std::size_t node = 0; node < place_.size(); ++node) {
+    for (std::size_t c = 0; c < 3; ++c)
+      x[4 * node + c] = static_cast<Scalar>(y[3 * static_cast<std::size_t>(place_[node]) + c]);
+    x[4 * node + 3] = 0;
+  }
+}
+
+std::int64_t CoarseSolver::bytes() const {
+  return static_cast<std::int64_t>(factor_.size() * sizeof(double));
+}
+
+template bool CoarseSolver::factor(const BlockMatrixf&, double);
+template bool CoarseSolver::factor(const BlockMatrixd&, double);
+template void CoarseSolver::solve(const NodeVector<float>&, NodeVector<float>&);
+template void CoarseSolver::solve(const NodeVector<double>&, NodeVector<double>&);
+
+}  // namespace softreel

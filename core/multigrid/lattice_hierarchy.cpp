@@ -1,0 +1,212 @@
+#include "core/multigrid/lattice_hierarchy.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/base/check.h"
+
+namespace softreel {
+namespace {
+
+/// Coarsening that keeps more nodes than this share ends the hierarchy: further levels would not pay.
+constexpr double kLeastReduction = 0.8;
+
+/// Lattice coordinates are kept far inside the range of lattice_key.
+constexpr double kMaxLatticeCoordinate = 500000;
+
+Vec3 lower_corner(const std::vector<Vec3>& points) {
+  Vec3 low = points.front();
+  for (const Vec3& point : points) low = low.cwiseMin(point);
+  return low;
+}
+
+Vec3 upper_corner(const std::vector<Vec3>& points) {
+  Vec3 high = points.front();
+  for (const Vec3& point : points) high = high.cwiseMax(point);
+  return high;
+}
+
+double mean_edge(const TetMesh& mesh) {
+  double sum = 0;
+  for (const Tet& tet : mesh.tets)
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = a + 1; b < 4; ++b)
+        sum += (mesh.nodes[static_cast<std::size_t>(tet[a])] - mesh.nodes[static_cast<std::size_t>(tet[b])]).norm();
+  return mesh.tets.empty() ? 0 : sum / (6.0 * static_cast<double>(mesh.tets.size()));
+}
+
+/// The lattice whose doublings cover the mesh: its own, or for a mesh made elsewhere one whose tetrahedra have the
+/// same mean edge. A BCC tetrahedron has two edges of the spacing h and four of sqrt(3)/2 h.
+LatticeFrame finest_frame(const TetMesh& mesh) {
+  LatticeFrame frame = mesh.lattice;
+  const Vec3 low = lower_corner(mesh.nodes);
+  const double extent = (upper_corner(mesh.nodes) - low).maxCoeff();
+  if (!(frame.spacing > 0)) frame = {low, mean_edge(mesh) / ((1 + std::sqrt(3.0)) / 3)};
+  if (!(frame.spacing > 0)) frame.spacing = extent > 0 ? extent : 1.0;
+  // A frame far away or absurdly fine for the mesh would leave the range of lattice coordinates.
+  const double reach = (low - frame.origin).cwiseAbs().maxCoeff() + extent;
+  if (2 * reach / frame.spacing > kMaxLatticeCoordinate) frame.origin = low;
+  frame.spacing = std::max(frame.spacing, 2 * extent / kMaxLatticeCoordinate);
+  return frame;
+}
+
+/// Young's modulus of the stiffest element around each node; empty if all are alike.
+std::vector<double> node_stiffness(const TetMesh& mesh, std::span<const double> element_stiffness) {
+  if (element_stiffness.empty()) return {};
+  CHECK(element_stiffness.size() == mesh.tets.size());
+  std::vector<double> stiffest(mesh.nodes.size(), 0.0);
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e)
+    for (const Index node : mesh.tets[e]) {
+      double& value = stiffest[static_cast<std::size_t>(node)];
+      value = std::max(value, element_stiffness[e]);
+    }
+  return stiffest;
+}
+
+/// Greedy colouring in the order of rows: each takes the first colour that no earlier neighbour has.
+std::vector<Index> color_rows(const BlockPattern& pattern, Index& colors) {
+  std::vector<Index> color(static_cast<std::size_t>(pattern.rows()), -1), taken_by;
+  colors = 0;
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    for (std::int64_t b = pattern.row_offsets[i]; b < pattern.row_offsets[i + 1]; ++b) {
+      const Index taken = color[static_cast<std::size_t>(pattern.column_indices[static_cast<std::size_t>(b)])];
+      if (taken >= 0) taken_by[static_cast<std::size_t>(taken)] = static_cast<Index>(i);
+    }
+    Index free = 0;
+    while (free < colors && taken_by[static_cast<std::size_t>(free)] == static_cast<Index>(i)) ++free;
+    if (free == colors) {
+      ++colors;
+      taken_by.push_back(-1);
+    }
+    color[i] = free;
+  }
+  return color;
+}
+
+/// Rows sorted by colour, in their old order within one: old row of each new one.
+std::vector<Index> order_by_color(const BlockPattern& pattern, std::vector<Index>& color_offsets) {
+  Index colors = 0;
+  const std::vector<Index> color = color_rows(pattern, colors);
+  color_offsets.assign(static_cast<std::size_t>(colors) + 1, 0);
+  for (const Index c : color) ++color_offsets[static_cast<std::size_t>(c) + 1];
+  std::partial_sum(color_offsets.begin(), color_offsets.end(), color_offsets.begin());
+  std::vector<Index> next(color_offsets.begin(), color_offsets.end() - 1), order(color.size());
+  for (std::size_t i = 0; i < color.size(); ++i)
+    order[static_cast<std::size_t>(next[static_cast<std::size_t>(color[i])]++)] = static_cast<Index>(i);
+  return order;
+}
+
+std::vector<Index> inverted(const std::vector<Index>& order) {
+  std::vector<Index> inverse(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) inverse[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
+  return inverse;
+}
+
+/// The pattern with rows and columns renumbered; source[b] is the old position of new block b.
+BlockPattern permuted(const BlockPattern& pattern, const std::vector<Index>& order, std::vector<std::int64_t>& source) {
+  const std::vector<Index> number = inverted(order);
+  BlockPattern result;
+  result.columns = pattern.columns;
+  source.reserve(static_cast<std::size_t>(pattern.blocks()));
+  std::vector<std::pair<Index, std::int64_t>> row;
+  for (const Index old_row : order) {
+    row.clear();
+    const auto r = static_cast<std::size_t>(old_row);
+    for (std::int64_t b = pattern.row_offsets[r]; b < pattern.row_offsets[r + 1]; ++b)
+      row.emplace_back(number[static_cast<std::size_t>(pattern.column_indices[static_cast<std::size_t>(b)])], b);
+    std::sort(row.begin(), row.end());
+    for (const auto& [column, block] : row) {
+      result.column_indices.push_back(column);
+      source.push_back(block);
+    }
+    result.row_offsets.push_back(result.blocks());
+  }
+  return result;
+}
+
+WeightMatrix permuted(const WeightMatrix& matrix, const std::vector<Index>& row_order,
+                      const std::vector<Index>& column_order) {
+  const std::vector<Index> number = inverted(column_order);
+  WeightMatrix result;
+  result.columns = matrix.columns;
+  std::vector<std::pair<Index, double>> row;
+  for (const Index old_row : row_order) {
+    row.clear();
+    const auto r = static_cast<std::size_t>(old_row);
+    for (std::int64_t e = matrix.row_offsets[r]; e < matrix.row_offsets[r + 1]; ++e) {
+      const auto entry = static_cast<std::size_t>(e);
+      row.emplace_back(number[static_cast<std::size_t>(matrix.column_indices[entry])], matrix.weights[entry]);
+    }
+    std::sort(row.begin(), row.end());
+    for (const auto& [column, weight] : row) {
+      result.column_indices.push_back(column);
+      result.weights.push_back(weight);
+    }
+    result.row_offsets.push_back(result.entries());
+  }
+  return result;
+}
+
+/// Levels before they are coloured.
+struct PlainLevel {
+  LevelNodes nodes;
+  BlockPattern pattern;
+  WeightMatrix prolongation;
+};
+
+std::vector<PlainLevel> coarsen_repeatedly(PlainLevel finest, LatticeFrame frame, const MultigridParams& params) {
+  std::vector<PlainLevel> levels;
+  levels.push_back(std::move(finest));
+  while (levels.back().pattern.rows() > params.bottom_nodes) {
+    PlainLevel& fine = levels.back();
+    frame.spacing *= 2;
+    Coarsening coarse = coarsen(fine.nodes, fine.pattern, frame, {params.dropped_weight, params.stiffness_contrast});
+    if (static_cast<double>(coarse.nodes.positions.size()) > kLeastReduction * fine.pattern.rows()) break;
+    fine.prolongation = std::move(coarse.prolongation);
+    BlockPattern pattern = galerkin_pattern(fine.pattern, transpose(fine.prolongation), fine.prolongation);
+    levels.push_back({std::move(coarse.nodes), std::move(pattern), {}});
+  }
+  return levels;
+}
+
+LatticeLevel colored(const PlainLevel& plain, const std::vector<Index>& order, std::vector<Index> color_offsets,
+                     std::vector<std::int64_t>& source) {
+  LatticeLevel level;
+  level.pattern = permuted(plain.pattern, order, source);
+  level.color_offsets = std::move(color_offsets);
+  for (Index i = 0; i < level.pattern.rows(); ++i) {
+    level.diagonal.push_back(level.pattern.find(i, i));
+    CHECK(level.diagonal.back() >= 0);
+  }
+  return level;
+}
+
+}  // namespace
+
+LatticeHierarchy build_lattice_hierarchy(const TetMesh& mesh, std::span<const double> element_stiffness,
+                                         const BlockPattern& pattern, const MultigridParams& params) {
+  CHECK(!mesh.nodes.empty());
+  CHECK(pattern.rows() == static_cast<Index>(mesh.nodes.size()));
+  const std::vector<PlainLevel> plain = coarsen_repeatedly(
+      {{mesh.nodes, node_stiffness(mesh, element_stiffness)}, pattern, {}}, finest_frame(mesh), params);
+  LatticeHierarchy hierarchy;
+  std::vector<std::vector<Index>> orders, color_offsets(plain.size());
+  for (std::size_t h = 0; h < plain.size(); ++h) orders.push_back(order_by_color(plain[h].pattern, color_offsets[h]));
+  for (std::size_t h = 0; h < plain.size(); ++h) {
+    std::vector<std::int64_t> source;
+    LatticeLevel level = colored(plain[h], orders[h], std::move(color_offsets[h]), source);
+    if (h + 1 < plain.size()) {
+      level.prolongation = permuted(plain[h].prolongation, orders[h], orders[h + 1]);
+      level.restriction = transpose(level.prolongation);
+    }
+    if (h == 0) hierarchy.source_blocks = std::move(source);
+    hierarchy.levels.push_back(std::move(level));
+  }
+  hierarchy.mesh_nodes = std::move(orders.front());
+  return hierarchy;
+}
+
+}  // namespace softreel

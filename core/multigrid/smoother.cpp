@@ -1,0 +1,124 @@
+#include "core/multigrid/smoother.h"
+
+#include <Eigen/Cholesky>
+
+#include "core/base/check.h"
+
+namespace softreel {
+
+template <typename Scalar>
+Smoother<Scalar>::Smoother(const LatticeLevel& level, const BlockMatrix<Scalar>& matrix)
+    : level_(level), matrix_(matrix) {
+  const auto rows = static_cast<std::size_t>(level.pattern.rows());
+  inverses_.assign(12 * rows, Scalar{0});
+  left_sums_.assign(4 * rows, Scalar{0});
+}
+
+template <typename Scalar>
+bool Smoother<Scalar>::update(const Threads& threads) {
+  // Inverted in double: 3x3, once per update.
+  const double failures =
+      threads.sum_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+        double failed = 0;
+        for (std::int64_t i = begin; i < end; ++i) {
+          const Scalar* const block = matrix_.block(level_.diagonal[static_cast<std::size_t>(i)]);
+          const Mat3 diagonal = Eigen::Map<const Eigen::Matrix<Scalar, 3, 3>>(block).template cast<double>();
+          const Mat3 symmetric = 0.5 * (diagonal + diagonal.transpose());
+          const Eigen::LLT<Mat3> factor(symmetric);
+          const Mat3 inverse = factor.solve(Mat3::Identity());
+          if (factor.info() != Eigen::Success || !inverse.allFinite()) {
+            ++failed;
+            continue;
+          }
+          for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r)
+              inverses_[static_cast<std::size_t>(12 * i + 4 * c + r)] = static_cast<Scalar>(inverse(r, c));
+        }
+        return failed;
+      });
+  return failures == 0;
+}
+
+template <typename Scalar>
+template <typename RowUpdate>
+void Smoother<Scalar>::for_color(std::size_t color, const Threads& threads, const RowUpdate& update) const {
+  const std::int64_t first = level_.color_offsets[color], count = level_.color_offsets[color + 1] - first;
+  threads.for_chunks(count, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = first + begin; i < first + end; ++i) update(i);
+  });
+}
+
+template <typename Scalar>
+NodeLanes<Scalar> Smoother<Scalar>::left_sum(std::int64_t row, const NodeVector<Scalar>& x) const {
+  return row_product(matrix_, level_.pattern.row_offsets.data()[row], level_.diagonal.data()[row], x.data());
+}
+
+template <typename Scalar>
+NodeLanes<Scalar> Smoother<Scalar>::right_sum(std::int64_t row, const NodeVector<Scalar>& x) const {
+  return row_product(matrix_, level_.diagonal.data()[row] + 1, level_.pattern.row_offsets.data()[row + 1], x.data());
+}
+
+template <typename Scalar>
+NodeLanes<Scalar> Smoother<Scalar>::solve_diagonal(std::int64_t row, const NodeLanes<Scalar>& rhs) const {
+  using Column = Eigen::Map<const NodeLanes<Scalar>>;
+  const Scalar* const inverse = inverses_.data() + 12 * row;
+  return Column(inverse) * rhs[0] + Column(inverse + 4) * rhs[1] + Column(inverse + 8) * rhs[2];
+}
+
+template <typename Scalar>
+void Smoother<Scalar>::forward_from_zero(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
+  for (std::size_t color = 0; color + 1 < level_.color_offsets.size(); ++color)
+    for_color(color, threads, [&](std::int64_t i) {
+      const NodeLanes<Scalar> left = left_sum(i, x);
+      lanes(left_sums_, i) = left;
+      lanes(x, i) = solve_diagonal(i, lanes(b, i) - left);
+    });
+}
+
+template <typename Scalar>
+void Smoother<Scalar>::forward(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
+  for (std::size_t color = 0; color + 1 < level_.color_offsets.size(); ++color)
+    for_color(color, threads, [&](std::int64_t i) {
+      const NodeLanes<Scalar> left = left_sum(i, x);
+      lanes(left_sums_, i) = left;
+      lanes(x, i) = solve_diagonal(i, lanes(b, i) - left - right_sum(i, x));
+    });
+}
+
+template <typename Scalar>
+void Smoother<Scalar>::backward(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
+  for (std::size_t color = level_.color_offsets.size() - 1; color-- > 0;)
+    for_color(color, threads, [&](std::int64_t i) {
+      lanes(x, i) = solve_diagonal(i, lanes(b, i) - lanes(left_sums_, i) - right_sum(i, x));
+    });
+}
+
+template <typename Scalar>
+void Smoother<Scalar>::smooth_from_zero(int sweeps, const NodeVector<Scalar>& b, NodeVector<Scalar>& x,
+                                        NodeVector<Scalar>& r, const Threads& threads) {
+  CHECK(sweeps >= 1);
+  forward_from_zero(b, x, threads);
+  backward(b, x, threads);
+  smooth(sweeps - 1, b, x, threads);
+  threads.for_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(left_sums_, i) - left_sum(i, x);
+  });
+}
+
+template <typename Scalar>
+void Smoother<Scalar>::smooth(int sweeps, const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    forward(b, x, threads);
+    backward(b, x, threads);
+  }
+}
+
+template <typename Scalar>
+std::int64_t Smoother<Scalar>::bytes() const {
+  return static_cast<std::int64_t>((inverses_.size() + left_sums_.size()) * sizeof(Scalar));
+}
+
+template class Smoother<float>;
+template class Smoother<double>;
+
+}  // namespace softreel

@@ -1,0 +1,62 @@
+/// One multigrid cycle in float or double: V on the finest level, V or W below, Cholesky on the last.
+///
+/// The cycle is a symmetric operator (symmetric sweeps, R and its transpose), so it can precondition conjugate
+/// gradients.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/multigrid/coarse_solver.h"
+#include "core/multigrid/lattice_hierarchy.h"
+#include "core/multigrid/smoother.h"
+#include "core/sparse/galerkin_gather.h"
+#include "core/sparse/galerkin_stream.h"
+
+namespace softreel {
+
+template <typename Scalar>
+class Cycle {
+ public:
+  /// hierarchy and threads are kept by reference.
+  Cycle(const LatticeHierarchy& hierarchy, const MultigridParams& params, const Threads& threads);
+
+  /// Takes the values of the mesh's matrix and rebuilds all levels. pinned: per mesh node, may be empty. False if the
+  /// operators are not positive definite in this precision; then the cycle must not be applied.
+  bool update(const BlockMatrixd& matrix, std::span<const std::uint8_t> pinned);
+
+  /// z = cycle applied to r, both in the order of the mesh's nodes. |r| scales the numbers so that float neither
+  /// overflows nor underflows; above 0.
+  void apply(const NodeVector<double>& r, double r_norm, NodeVector<double>& z);
+
+  /// Bytes of level h: matrix, smoother, vectors, product plan, factors.
+  std::int64_t bytes(std::size_t level) const;
+
+ private:
+  struct Level {
+    Level(const LatticeLevel& structure, bool last);
+    const LatticeLevel& structure;
+    BlockMatrix<Scalar> matrix;
+    NodeVector<Scalar> b, x, r, correction;
+    std::unique_ptr<Smoother<Scalar>> smoother;      ///< all levels but the last
+    std::unique_ptr<GalerkinGather<Scalar>> gather;  ///< the product to the next level, by the chosen method
+    std::unique_ptr<GalerkinStream<Scalar>> stream;
+  };
+
+  void copy_values(const BlockMatrixd& matrix, std::span<const std::uint8_t> pinned);
+  void form_next(std::size_t h);
+  void cycle(std::size_t h);
+  void correct_from_next(std::size_t h);
+
+  const LatticeHierarchy& hierarchy_;
+  MultigridParams params_;
+  const Threads& threads_;
+  std::vector<std::unique_ptr<Level>> levels_;
+  CoarseSolver bottom_;
+  std::vector<std::uint8_t> pinned_;  ///< in the order of level 0
+};
+
+}  // namespace softreel

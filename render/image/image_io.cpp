@@ -1,0 +1,220 @@
+#include "render/image/image_io.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <memory>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <fmt/format.h>
+#include <png.h>
+
+#include "core/base/check.h"
+#include "core/base/error.h"
+#include "render/image/view_transform.h"
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_HDR
+#define STBI_ONLY_JPEG
+#include <stb/stb_image.h>
+
+namespace softreel {
+
+namespace {
+
+Error unreadable(const std::string& path, const std::string& reason, const char* accepted) {
+  return input_error(
+      fmt::format("{}: cannot be read: {}.\n"
+                  "  Accepted: {}. Check the path, or save the picture again from the program that made it.",
+                  path, reason, accepted));
+}
+
+/// Collects what OpenEXR writes.
+class MemoryStream : public Imf::OStream {
+ public:
+  MemoryStream() : Imf::OStream("memory") {}
+
+  void write(const char data[], int size) override {
+    const auto end = position_ + static_cast<std::size_t>(size);
+    if (end > bytes_.size()) bytes_.resize(end);
+    std::memcpy(bytes_.data() + position_, data, static_cast<std::size_t>(size));
+    position_ = end;
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = static_cast<std::size_t>(position); }
+  std::vector<std::uint8_t> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+  std::size_t position_ = 0;
+};
+
+std::size_t pixel_count(int width, int height) {
+  CHECK(width > 0);
+  CHECK(height > 0);
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
+/// A slice over one channel; the first pixel of the data window is pixels[0].
+Imf::Slice float_slice(const Channel& channel, int width, const Imath::Box2i& window) {
+  auto* pixels = const_cast<float*>(channel.pixels.data());  // OpenEXR has one slice type for reading and writing
+  return Imf::Slice::Make(Imf::FLOAT, pixels, window, sizeof(float), sizeof(float) * static_cast<std::size_t>(width));
+}
+
+std::string ending(const std::string& path) {
+  const auto dot = path.rfind('.');
+  std::string end = dot == std::string::npos ? "" : path.substr(dot + 1);
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  return end;
+}
+
+EnvironmentImage from_display(const DisplayImage& display) {
+  EnvironmentImage image{display.width, display.height, {}};
+  image.pixels.reserve(pixel_count(display.width, display.height));
+  for (std::size_t k = 0; k < display.pixels.size(); k += 3) {
+    const auto linear = [&](std::size_t c) { return srgb_decode(static_cast<float>(display.pixels[k + c]) / 255); };
+    image.pixels.emplace_back(linear(0), linear(1), linear(2));
+  }
+  return image;
+}
+
+EnvironmentImage from_channels(const Image& image, const std::string& path) {
+  const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
+  if (r == nullptr || g == nullptr || b == nullptr)
+    throw unreadable(path, "it lacks one of the channels R, G, B", "an EXR with colour channels");
+  EnvironmentImage out{image.width, image.height, {}};
+  out.pixels.reserve(r->pixels.size());
+  for (std::size_t k = 0; k < r->pixels.size(); ++k) out.pixels.emplace_back(r->pixels[k], g->pixels[k], b->pixels[k]);
+  return out;
+}
+
+using StbPixels = std::unique_ptr<void, decltype(&stbi_image_free)>;
+
+EnvironmentImage read_hdr(const std::string& path) {
+  int width = 0, height = 0, components = 0;
+  float* data = stbi_loadf(path.c_str(), &width, &height, &components, 3);
+  const StbPixels owner(data, &stbi_image_free);
+  if (data == nullptr) throw unreadable(path, stbi_failure_reason(), "a Radiance HDR picture");
+  EnvironmentImage image{width, height, {}};
+  for (std::size_t k = 0; k < pixel_count(width, height); ++k)
+    image.pixels.emplace_back(data[3 * k], data[3 * k + 1], data[3 * k + 2]);
+  return image;
+}
+
+DisplayImage read_jpeg(const std::string& path) {
+  int width = 0, height = 0, components = 0;
+  stbi_uc* data = stbi_load(path.c_str(), &width, &height, &components, 3);
+  const StbPixels owner(data, &stbi_image_free);
+  if (data == nullptr) throw unreadable(path, stbi_failure_reason(), "a JPEG picture");
+  return {width, height, {data, data + 3 * pixel_count(width, height)}};
+}
+
+void require_finite(const EnvironmentImage& image, const std::string& path) {
+  for (std::size_t k = 0; k < image.pixels.size(); ++k)
+    if (!image.pixels[k].allFinite() || image.pixels[k].minCoeff() < 0)
+      throw input_error(
+          fmt::format("{}: pixel ({}, {}) has the radiance ({}, {}, {}), which no light has.\n"
+                      "  Accepted: finite numbers of 0 or more. Repair the picture, for example by clamping it.",
+                      path, k % static_cast<std::size_t>(image.width), k / static_cast<std::size_t>(image.width),
+                      image.pixels[k].x(), image.pixels[k].y(), image.pixels[k].z()));
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_png(const DisplayImage& image) {
+  CHECK(image.pixels.size() == 3 * pixel_count(image.width, image.height));
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width);
+  header.height = static_cast<png_uint_32>(image.height);
+  header.format = PNG_FORMAT_RGB;
+  std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(header));
+  png_alloc_size_t size = bytes.size();
+  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr) == 0)
+    throw work_error(fmt::format("Compressing a PNG of {} x {} pixels failed: {}.\n  Free some memory and run again.",
+                                 image.width, image.height, header.message));
+  bytes.resize(size);
+  return bytes;
+}
+
+std::vector<std::uint8_t> encode_exr(const Image& image) {
+  MemoryStream stream;
+  try {
+    Imf::Header header(image.width, image.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer frame;
+    for (const Channel& channel : image.channels) {
+      CHECK(channel.pixels.size() == pixel_count(image.width, image.height));
+      header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+      frame.insert(channel.name, float_slice(channel, image.width, header.dataWindow()));
+    }
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(frame);
+    file.writePixels(image.height);
+  } catch (const std::exception& failure) {
+    throw work_error(fmt::format("Compressing an EXR of {} x {} pixels failed: {}.\n  Free some memory and run again.",
+                                 image.width, image.height, failure.what()));
+  }
+  return stream.take();
+}
+
+DisplayImage read_png(const std::string& path) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_file(&header, path.c_str()) == 0)
+    throw unreadable(path, header.message, "a PNG picture");
+  header.format = PNG_FORMAT_RGB;
+  DisplayImage image{static_cast<int>(header.width), static_cast<int>(header.height), {}};
+  image.pixels.resize(3 * pixel_count(image.width, image.height));
+  const png_color black{0, 0, 0};  // behind transparent pixels
+  if (png_image_finish_read(&header, &black, image.pixels.data(), 0, nullptr) == 0)
+    throw unreadable(path, header.message, "a complete PNG picture");
+  return image;
+}
+
+Image read_exr(const std::string& path) {
+  try {
+    Imf::InputFile file(path.c_str());
+    const Imath::Box2i window = file.header().dataWindow();
+    Image image{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, {}};
+    const std::size_t pixels = pixel_count(image.width, image.height);
+    for (auto c = file.header().channels().begin(); c != file.header().channels().end(); ++c)
+      image.channels.push_back({c.name(), std::vector<float>(pixels)});
+    Imf::FrameBuffer frame;
+    for (const Channel& channel : image.channels) frame.insert(channel.name, float_slice(channel, image.width, window));
+    file.setFrameBuffer(frame);
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+  } catch (const std::exception& failure) {
+    throw unreadable(path, failure.what(), "a scan-line EXR picture");
+  }
+}
+
+EnvironmentImage read_environment(const std::string& path) {
+  const std::string end = ending(path);
+  EnvironmentImage image;
+  if (end == "exr")
+    image = from_channels(read_exr(path), path);
+  else if (end == "hdr")
+    image = read_hdr(path);
+  else if (end == "png")
+    image = from_display(read_png(path));
+  else if (end == "jpg" || end == "jpeg")
+    image = from_display(read_jpeg(path));
+  else
+    throw unreadable(path, fmt::format("'.{}' names no known format", end),
+                     "files ending in .exr, .hdr, .png, .jpg, .jpeg");
+  require_finite(image, path);
+  return image;
+}
+
+}  // namespace softreel

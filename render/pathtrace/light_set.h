@@ -1,0 +1,64 @@
+/// All lights of a picture: choosing one of them, sampling it, and what a ray finds on its own.
+#pragma once
+
+#include <vector>
+
+#include "render/pathtrace/environment_light.h"
+#include "render/pathtrace/rectangle_light.h"
+#include "render/pathtrace/sampling.h"
+#include "render/scene/scene.h"
+
+namespace softreel {
+
+/// The point that light arrives at.
+struct Receiver {
+  Vec3f position;
+  Vec3f normal;             ///< unit, towards the viewer
+  bool both_sides = false;  ///< light from behind the surface counts too (glass)
+};
+
+/// How a ray's direction was found, for weighing light that it meets against sampling the lights.
+struct RayOrigin {
+  Receiver receiver;
+  float pdf = 0;         ///< of the direction, by solid angle
+  bool only_way = true;  ///< the camera or a mirror: no light sampling could have found the direction
+  bool from_camera = true;
+};
+
+class LightSet {
+ public:
+  /// Keeps a reference to scene.environment. Throws input_error for lights without extent or direction.
+  explicit LightSet(const Scene& scene);
+
+  /// A direction towards one light, chosen by the rough irradiance of each at the receiver; sample.pdf includes the
+  /// choice. False if no light reaches the receiver. `point_like` is set for a sun without extent.
+  bool sample(const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample, bool& point_like) const;
+
+  /// Radiance of the area lights that a ray passes within `distance`, weighed.
+  Vec3f area_lights_along(const Vec3f& position, const Vec3f& direction, float distance, const RayOrigin& origin) const;
+  /// Radiance of suns and environment from a direction, weighed.
+  Vec3f surroundings(const Vec3f& direction, const RayOrigin& origin) const;
+
+ private:
+  struct Sun {
+    Vec3f towards;  ///< unit
+    ShadingFrame frame;
+    float one_minus_cos;  ///< of half the angular diameter
+    Vec3f radiance;       ///< irradiance if the sun has no extent
+    float pdf;            ///< 0 if it has none
+    float importance;
+  };
+
+  static Sun make_sun(const SunLight& light);
+  bool sample_sun(const Sun& sun, const Vec2f& u, LightSample& sample) const;
+  /// Rough irradiance of light k at a receiver: area lights, then suns, then the environment.
+  float importance(std::size_t k, const Receiver& receiver) const;
+  float probability(std::size_t k, const Receiver& receiver) const;
+  std::size_t count() const { return rectangles_.size() + suns_.size() + (environment_.sampled() ? 1 : 0); }
+
+  std::vector<RectangleLight> rectangles_;
+  std::vector<Sun> suns_;
+  EnvironmentLight environment_;
+};
+
+}  // namespace softreel

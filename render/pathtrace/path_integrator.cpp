@@ -1,0 +1,108 @@
+#include "render/pathtrace/path_integrator.h"
+
+namespace softreel {
+
+namespace {
+
+/// Paths of this many scattering events may be ended by chance.
+constexpr int kRouletteStart = 3;
+
+/// Dimensions of a scattering event's block.
+enum Dimension : std::size_t { kLightU = 0, kLightV = 1, kBsdfU = 2, kBsdfV = 3, kLobe = 4, kLight = 5, kRoulette = 6 };
+
+}  // namespace
+
+const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, const SurfacePoint& point) const {
+  const auto mesh = static_cast<std::size_t>(hit.mesh);
+  if (picture_.pattern && mesh + 1 == picture_.meshes.size() && picture_.pattern->alternate(point.position))
+    return picture_.bsdfs.back();
+  return picture_.bsdfs[mesh];
+}
+
+void PathIntegrator::add(const Vec3f& radiance) {
+  Vec3f part = throughput_.cwiseProduct(radiance);
+  // After the first scattering the light is direct; only what comes by way of another surface is clamped.
+  if (picture_.clamp > 0 && bounces_ > 1) {
+    const float largest = part.maxCoeff();
+    if (largest > picture_.clamp) part *= picture_.clamp / largest;
+  }
+  radiance_ += part;
+}
+
+void PathIntegrator::collect(const Ray& ray, bool hit, float distance) {
+  const float reach = hit ? distance : ray.max_distance;
+  Vec3f found = picture_.lights->area_lights_along(ray.origin, ray.direction, reach, origin_);
+  if (!hit) found += picture_.lights->surroundings(ray.direction, origin_);
+  add(found);
+}
+
+void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
+                                const Vec3f& to_viewer, const SampleBlock& numbers) {
+  LightSample light;
+  bool point_like = false;
+  if (!picture_.lights->sample(origin_.receiver, numbers[kLight], Vec2f(numbers[kLightU], numbers[kLightV]), light,
+                               point_like))
+    return;
+  const BsdfValue value = bsdf.evaluate(frame.to_local(to_viewer), frame.to_local(light.direction), point.inside);
+  if (value.value.maxCoeff() <= 0) return;
+  const float weight = point_like ? 1.0f : power_heuristic(light.pdf, value.pdf);
+  const bool through = light.direction.dot(point.shading_normal) < 0;
+  Ray shadow;
+  shadow.origin = through ? point.lowered : point.lifted;
+  shadow.direction = light.direction;
+  shadow.max_distance = light.distance;
+  shadow.time = time_;
+  if (picture_.rays->occluded(shadow, bounces_ == 1)) return;
+  add(value.value.cwiseProduct(light.radiance) * (weight / light.pdf));
+}
+
+bool PathIntegrator::scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
+                             const Vec3f& to_viewer, const SampleBlock& numbers, Ray& ray) {
+  BsdfSample next;
+  if (!bsdf.sample(frame.to_local(to_viewer), numbers[kLobe], Vec2f(numbers[kBsdfU], numbers[kBsdfV]), point.inside,
+                   next))
+    return false;
+  throughput_ = throughput_.cwiseProduct(next.weight);
+  if (!(throughput_.maxCoeff() > 0)) return false;
+  ray.origin = next.direction.z() < 0 ? point.lowered : point.lifted;
+  ray.direction = frame.to_world(next.direction);
+  ray.max_distance = std::numeric_limits<float>::infinity();
+  origin_.pdf = next.pdf;
+  origin_.only_way = next.mirror;
+  origin_.from_camera = false;
+  return bounces_ < kRouletteStart || survives_roulette(numbers[kRoulette]);
+}
+
+bool PathIntegrator::survives_roulette(float u) {
+  const float chance = std::min(1.0f, throughput_.maxCoeff());
+  if (u >= chance) return false;
+  throughput_ /= chance;
+  return true;
+}
+
+Vec3f PathIntegrator::trace(const Ray& camera_ray) {
+  Ray ray = camera_ray;
+  time_ = ray.time;
+  for (;;) {
+    RayHit hit;
+    const bool found = picture_.rays->intersect(ray, hit, bounces_ == 0);
+    collect(ray, found, hit.distance);
+    if (!found) break;
+    const SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
+    const Bsdf& bsdf = bsdf_at(hit, point);
+    if (bounces_ == 0) first_hit_ = {bsdf.albedo(), point.shading_normal, hit.distance};
+    if (point.inside && bsdf.transmits())
+      throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());
+    if (!point.inside) add(bsdf.emission());
+    if (bounces_ == picture_.max_bounces) break;
+    const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(++bounces_));
+    const ShadingFrame frame(point.shading_normal);
+    const Vec3f to_viewer = -ray.direction;
+    origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits()};
+    if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, to_viewer, numbers);
+    if (!scatter(bsdf, point, frame, to_viewer, numbers, ray)) break;
+  }
+  return radiance_;
+}
+
+}  // namespace softreel

@@ -1,0 +1,71 @@
+/// The light that arrives along one camera ray: a path of scattering events with light sampling at each.
+///
+/// Kajiya, The Rendering Equation, 1986; multiple importance sampling: Veach, Robust Monte Carlo Methods for Light
+/// Transport Simulation, 1997, chapter 9.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "render/pathtrace/bsdf.h"
+#include "render/pathtrace/light_set.h"
+#include "render/pathtrace/ray_scene.h"
+#include "render/pathtrace/sampler.h"
+#include "render/pathtrace/surface_point.h"
+#include "render/scene/ground_mesh.h"
+
+namespace softreel {
+
+/// A scene made ready for paths. Borrows the scene's meshes and `rays`.
+struct Picture {
+  const RayScene* rays = nullptr;
+  std::vector<const MotionMesh*> meshes;  ///< in the order of `rays`
+  std::vector<Bsdf> bsdfs;                ///< per mesh; last, if there is a pattern: its second tone
+  std::optional<GroundPattern> pattern;   ///< on the last mesh
+  const LightSet* lights = nullptr;
+  int max_bounces = 8;
+  float clamp = 0;
+};
+
+/// What the auxiliary channels show of one camera ray; zeros where it hit nothing.
+struct FirstHit {
+  Vec3f albedo = Vec3f::Zero();
+  Vec3f normal = Vec3f::Zero();
+  float distance = 0;
+};
+
+/// One path.
+class PathIntegrator {
+ public:
+  PathIntegrator(const Picture& picture, const Sampler& sampler, std::uint32_t sample)
+      : picture_(picture), sampler_(sampler), sample_(sample) {}
+
+  /// Radiance arriving at the start of a camera ray.
+  Vec3f trace(const Ray& camera_ray);
+  const FirstHit& first_hit() const { return first_hit_; }
+
+ private:
+  const Bsdf& bsdf_at(const RayHit& hit, const SurfacePoint& point) const;
+  /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
+  void collect(const Ray& ray, bool hit, float distance);
+  void add(const Vec3f& radiance);
+  /// Light sampling at a point.
+  void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
+                  const SampleBlock& numbers);
+  /// Continues the path; false where it ends.
+  bool scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
+               const SampleBlock& numbers, Ray& ray);
+  bool survives_roulette(float u);
+
+  const Picture& picture_;
+  const Sampler& sampler_;
+  std::uint32_t sample_;
+  Vec3f radiance_ = Vec3f::Zero();
+  Vec3f throughput_ = Vec3f::Ones();
+  int bounces_ = 0;  ///< scattering events so far
+  float time_ = 0;
+  RayOrigin origin_;
+  FirstHit first_hit_;
+};
+
+}  // namespace softreel

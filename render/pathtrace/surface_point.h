@@ -1,0 +1,24 @@
+/// The surface at the end of a ray: position, normals and where to start the next ray.
+#pragma once
+
+#include "render/pathtrace/ray_scene.h"
+
+namespace softreel {
+
+struct SurfacePoint {
+  Vec3f position;
+  Vec3f geometric_normal;  ///< of the triangle, towards the viewer
+  Vec3f shading_normal;    ///< interpolated, towards the viewer
+  bool inside = false;     ///< the viewer is behind the triangle: inside a closed mesh
+  Vec3f lifted;            ///< start of rays that stay on the viewer's side
+  Vec3f lowered;           ///< start of rays that pass through
+};
+
+/// The point of `mesh` that `ray` hit. Corners move on straight lines between the mesh's times.
+///
+/// lifted: Hanika, Hacking the Shadow Terminator, 2021: on the smooth surface that the vertex normals describe, not on
+/// the flat triangle, so that large triangles cast no shadow of their own shape; and off the surface by the rounding of
+/// its coordinates.
+SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray& ray);
+
+}  // namespace softreel

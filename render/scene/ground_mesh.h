@@ -1,0 +1,26 @@
+/// The ground as triangles, and the pattern on it.
+#pragma once
+
+#include "render/scene/scene.h"
+
+namespace softreel {
+
+/// A square around the origin (Plane), or the studio backdrop (Sweep): the square as far as `sweep` metres away from
+/// the camera, then a quarter circle of radius sweep / 2, then a wall. Normals are smooth and exact on the arc. Throws
+/// input_error for a size or sweep that leaves no ground.
+MotionMesh ground_mesh(const Ground& ground, const Camera& camera);
+
+/// The two-tone pattern; on a Sweep its squares follow the backdrop up the wall.
+class GroundPattern {
+ public:
+  GroundPattern(const Ground& ground, const Camera& camera);
+  /// Whether a point of the ground has checker_color. False everywhere without a pattern.
+  bool alternate(const Vec3f& position) const;
+
+ private:
+  GroundStyle style_;
+  float height_, sweep_, edge_;
+  Vec3f across_, along_;
+};
+
+}  // namespace softreel

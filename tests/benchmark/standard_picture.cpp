@@ -1,0 +1,156 @@
+/// Renders the standard scene of ../shared/render_refs (an armadillo, a lamp, a constant sky), to be compared with its
+/// reference pictures by image_error.py, and prints samples, seconds and paths a second as tab-separated values.
+///
+///   standard_picture BODY.obj [--close BODY_AT_CLOSE.obj] [--spp N] [--threads N] [--size W H] [--output F.exr]
+///
+/// BODY.obj is arma0_k0.obj of make_meshes.py there, BODY_AT_CLOSE.obj its key 1 (then with motion blur).
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "render/image/image_io.h"
+#include "render/pathtrace/path_tracer.h"
+
+namespace softreel {
+namespace {
+
+struct Options {
+  std::string body, close, output;
+  int threads = 0;
+  RenderParams params;
+};
+
+/// Vertices and triangles of an OBJ file of "v x y z" and "f a b c" lines.
+void read_positions(const std::string& path, std::vector<Vec3f>& positions, std::vector<Triangle>* triangles) {
+  std::ifstream file(path);
+  if (!file) throw input_error(fmt::format("{}: cannot be opened.", path));
+  for (std::string line; std::getline(file, line);) {
+    float x = 0, y = 0, z = 0;
+    int a = 0, b = 0, c = 0;
+    if (std::sscanf(line.c_str(), "v %f %f %f", &x, &y, &z) == 3) positions.emplace_back(x, y, z);
+    if (triangles != nullptr && std::sscanf(line.c_str(), "f %d %d %d", &a, &b, &c) == 3)
+      triangles->push_back({a - 1, b - 1, c - 1});
+  }
+}
+
+/// Area-weighted vertex normals.
+std::vector<Vec3f> normals_of(const std::vector<Vec3f>& positions, const std::vector<Triangle>& triangles) {
+  std::vector<Vec3f> normals(positions.size(), Vec3f::Zero());
+  const auto at = [](auto& values, Index k) -> auto& {
+    return values[static_cast<std::size_t>(k)];
+  };
+  for (const Triangle& t : triangles) {
+    const Vec3f n = (at(positions, t[1]) - at(positions, t[0])).cross(at(positions, t[2]) - at(positions, t[0]));
+    for (const Index k : t) at(normals, k) += n;
+  }
+  for (Vec3f& n : normals) n.normalize();
+  return normals;
+}
+
+MotionMesh read_body(const Options& options) {
+  MotionMesh mesh;
+  mesh.name = "body";
+  mesh.times.resize(options.close.empty() ? 1 : 2);
+  read_positions(options.body, mesh.times[0].positions, &mesh.triangles);
+  if (!options.close.empty()) read_positions(options.close, mesh.times[1].positions, nullptr);
+  for (MotionMesh::Time& time : mesh.times) time.normals = normals_of(time.positions, mesh.triangles);
+  mesh.appearance.base_color = Vec3f(0.8f, 0.3f, 0.15f);
+  mesh.appearance.specular = 0;
+  return mesh;
+}
+
+/// The scene's ground: 20 m square at z = 0 (the scene has z up).
+MotionMesh ground() {
+  MotionMesh mesh;
+  mesh.name = "ground";
+  mesh.times.resize(1);
+  mesh.times[0].positions = {Vec3f(-10, -10, 0), Vec3f(10, -10, 0), Vec3f(10, 10, 0), Vec3f(-10, 10, 0)};
+  mesh.times[0].normals.assign(4, Vec3f(0, 0, 1));
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.appearance.base_color = Vec3f(0.5f, 0.5f, 0.5f);
+  mesh.appearance.specular = 0;
+  return mesh;
+}
+
+/// The numbers of standard.scene.json.
+Scene standard_scene(const Options& options) {
+  Scene scene;
+  scene.meshes = {read_body(options), ground()};
+  const Vec3f backward(0.16103392839431763f, -0.9662035703659058f, 0.20129244029521942f);
+  scene.camera.position = Vec3f(1, -6, 2.2f);
+  scene.camera.target = scene.camera.position - backward;
+  scene.camera.up = Vec3f(-0.033092256635427475f, 0.1985536366701126f, 0.9795311093330383f);
+  AreaLight lamp;
+  lamp.center = Vec3f(2.5f, -2.5f, 4);
+  // Emits along -z of its frame: u x v must be -z, so the axes change places.
+  lamp.u = 0.75f * Vec3f(-0.45749568939208984f, 0.4574955105781555f, 0.7624929547309875f);
+  lamp.v = 0.75f * Vec3f(0.7071066498756409f, 0.7071069478988647f, 7.208546648485026e-09f);
+  lamp.radiance = Vec3f::Constant(400.0f / (4 * 1.5f * 1.5f));
+  scene.area_lights = {lamp};
+  scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Vec3f(0.3f, 0.4f, 0.5f);
+  return scene;
+}
+
+Options parse(int argc, char** argv) {
+  Options options;
+  options.params.width = 640;
+  options.params.height = 360;
+  for (int k = 1; k < argc; ++k) {
+    const std::string option = argv[k];
+    const auto next = [&]() -> std::string {
+      if (k + 1 >= argc) throw input_error(option + " lacks its value.");
+      return argv[++k];
+    };
+    if (option == "--close")
+      options.close = next();
+    else if (option == "--spp")
+      options.params.samples = std::stoi(next());
+    else if (option == "--threads")
+      options.threads = std::stoi(next());
+    else if (option == "--output")
+      options.output = next();
+    else if (option == "--size") {
+      options.params.width = std::stoi(next());
+      options.params.height = std::stoi(next());
+    } else
+      options.body = option;
+  }
+  if (options.body.empty()) throw input_error("standard_picture: name the body's OBJ file.");
+  return options;
+}
+
+void run(const Options& options) {
+  const Scene scene = standard_scene(options);
+  const Threads threads(options.threads);
+  StageTimes times;
+  PathTracer tracer(threads, times);
+  const auto start = std::chrono::steady_clock::now();
+  const Image image = tracer.render(scene, options.params);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double paths = static_cast<double>(options.params.width) * options.params.height * options.params.samples;
+  fmt::print("spp\tseconds\tpaths_per_second\tbuild_seconds\n{}\t{:.4f}\t{:.4g}\t{:.4f}\n", options.params.samples,
+             seconds, paths / seconds, times.entries()["render/build"].seconds);
+  if (options.output.empty()) return;
+  const std::vector<std::uint8_t> bytes = encode_exr(image);
+  std::ofstream(options.output, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+}  // namespace
+}  // namespace softreel
+
+int main(int argc, char** argv) {
+  try {
+    softreel::run(softreel::parse(argc, argv));
+    return 0;
+  } catch (const softreel::Error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return static_cast<int>(error.kind());
+  }
+}

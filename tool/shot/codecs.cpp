@@ -1,0 +1,237 @@
+#include "tool/shot/codecs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/base/nearest_name.h"
+
+namespace softreel {
+namespace {
+
+/// Whole numbers above this have neighbours that a double cannot tell apart.
+constexpr double kLargestExactWhole = 9007199254740992.0;
+
+/// The number with the fewest digits, near `guess`, that `forward` maps to exactly `wanted`.
+template <typename T, typename Forward>
+double invert_exactly(const Forward& forward, T wanted, double guess) {
+  for (int digits = 1; digits <= 17; ++digits) {
+    const double candidate = std::stod(fmt::format("{:.{}g}", guess, digits));
+    if (forward(candidate) == wanted) return candidate;
+  }
+  double below = guess, above = guess;
+  for (int step = 0; step < 8; ++step) {
+    below = std::nextafter(below, -kNoEnd);
+    above = std::nextafter(above, kNoEnd);
+    if (forward(below) == wanted) return below;
+    if (forward(above) == wanted) return above;
+  }
+  return guess;
+}
+
+Range single_range(Range range) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return {std::max(range.min, -kLargest), std::min(range.max, kLargest), range.above_min};
+}
+
+}  // namespace
+
+std::string to_text(const Range& range) {
+  const bool has_min = std::isfinite(range.min), has_max = std::isfinite(range.max);
+  const auto end = [](double x) { return fmt::format("{}", x); };
+  if (!has_min && !has_max) return "any finite number";
+  if (!has_max) return range.above_min ? "above " + end(range.min) : end(range.min) + " or more";
+  if (!has_min) return end(range.max) + " or less";
+  if (range.above_min) return "above " + end(range.min) + ", up to " + end(range.max);
+  return end(range.min) + " to " + end(range.max);
+}
+
+double parse_number(const Place& place, const TomlValue& value, const Range& range) {
+  double number = 0;
+  if (const auto* whole = std::get_if<std::int64_t>(&value.data)) {
+    number = static_cast<double>(*whole);
+  } else if (const auto* real = std::get_if<double>(&value.data)) {
+    number = *real;
+  } else {
+    throw value_error(place, value, "it is " + kind_name(value) + ", not a number");
+  }
+  if (!std::isfinite(number)) throw value_error(place, value, "it is not finite");
+  if (!range.contains(number)) throw value_error(place, value, "it is out of range");
+  return number;
+}
+
+std::int64_t parse_whole(const Place& place, const TomlValue& value, std::int64_t min, std::int64_t max) {
+  std::int64_t number = 0;
+  if (const auto* whole = std::get_if<std::int64_t>(&value.data)) {
+    number = *whole;
+  } else if (const auto* real = std::get_if<double>(&value.data)) {
+    if (!std::isfinite(*real)) throw value_error(place, value, "it is not finite");
+    if (*real != std::floor(*real)) throw value_error(place, value, "it is not a whole number");
+    if (std::abs(*real) > kLargestExactWhole) throw value_error(place, value, "it is out of range");
+    number = static_cast<std::int64_t>(*real);
+  } else {
+    throw value_error(place, value, "it is " + kind_name(value) + ", not a whole number");
+  }
+  if (number < min || number > max) throw value_error(place, value, "it is out of range");
+  return number;
+}
+
+std::vector<double> parse_numbers(const Place& place, const TomlValue& value, std::size_t count, const Range& range) {
+  const auto* items = value.array();
+  if (items == nullptr)
+    throw value_error(place, value, fmt::format("it is {}, not a list of {} numbers", kind_name(value), count));
+  if (items->size() != count)
+    throw value_error(place, value, fmt::format("the list has {} values, not {}", items->size(), count));
+  std::vector<double> numbers;
+  for (const TomlValue& item : *items)
+    numbers.push_back(parse_number(place.part(fmt::format("[{}]", numbers.size())), item, range));
+  return numbers;
+}
+
+TomlValue print_number(double value) {
+  return toml_value(value);
+}
+
+TomlValue print_number(float value) {
+  // The shortest decimal of the single, as a double: it prints as short and reads back as the same single.
+  return toml_value(std::stod(fmt::format("{}", value)));
+}
+
+Codec<double> number(const Range& range) {
+  Codec<double> codec;
+  codec.type = "number";
+  codec.accepted = to_text(range);
+  codec.parse = [range](const Place& place, const TomlValue& value) { return parse_number(place, value, range); };
+  codec.print = [](const double& value) { return print_number(value); };
+  return codec;
+}
+
+Codec<float> single(const Range& range) {
+  Codec<float> codec;
+  codec.type = "number";
+  codec.accepted = to_text(range);
+  codec.parse = [held = single_range(range)](const Place& place, const TomlValue& value) {
+    return static_cast<float>(parse_number(place, value, held));
+  };
+  codec.print = [](const float& value) { return print_number(value); };
+  return codec;
+}
+
+Codec<bool> toggle() {
+  Codec<bool> codec;
+  codec.type = "true or false";
+  codec.accepted = "true or false";
+  codec.parse = [](const Place& place, const TomlValue& value) {
+    const auto* flag = std::get_if<bool>(&value.data);
+    if (flag == nullptr) throw value_error(place, value, "it is " + kind_name(value) + ", not true or false");
+    return *flag;
+  };
+  codec.print = [](const bool& value) { return toml_value(value); };
+  return codec;
+}
+
+Codec<std::string> text() {
+  Codec<std::string> codec;
+  codec.type = "text";
+  codec.accepted = "text in quotes, not empty";
+  codec.parse = [](const Place& place, const TomlValue& value) {
+    if (value.text() == nullptr) throw value_error(place, value, "it is " + kind_name(value) + ", not text");
+    if (value.text()->empty()) throw value_error(place, value, "it is empty");
+    return *value.text();
+  };
+  codec.print = [](const std::string& value) -> std::optional<TomlValue> {
+    if (value.empty()) return std::nullopt;
+    return toml_value(value);
+  };
+  return codec;
+}
+
+Codec<std::string> file_name() {
+  Codec<std::string> codec = text();
+  codec.accepted = "text that can be part of a file's name: no '/', no control characters, not '.' or '..'";
+  codec.parse = [parse = codec.parse](const Place& place, const TomlValue& value) {
+    std::string name = parse(place, value);
+    const bool bad_letter = std::any_of(name.begin(), name.end(), [](char c) {
+      return c == '/' || static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
+    });
+    if (bad_letter || name == "." || name == "..") throw value_error(place, value, "files are named after it");
+    return name;
+  };
+  return codec;
+}
+
+Codec<std::string> file_path() {
+  Codec<std::string> codec = text();
+  codec.type = "path";
+  codec.accepted = "a path in quotes, relative to the file that says it (with --set: to the working directory)";
+  codec.parse = [parse = codec.parse](const Place& place, const TomlValue& value) {
+    const std::filesystem::path path = parse(place, value);
+    if (path.native().find('\0') != std::string::npos) throw value_error(place, value, "it holds a null character");
+    if (value.origin.line == 0 || path.is_absolute()) return path.lexically_normal().string();
+    return (std::filesystem::path(value.origin.file).parent_path() / path).lexically_normal().string();
+  };
+  codec.print = [](const std::string& value) -> std::optional<TomlValue> {
+    if (value.empty()) return std::nullopt;
+    return toml_value(std::filesystem::absolute(value).lexically_normal().string());
+  };
+  return codec;
+}
+
+double to_radians(double degrees) {
+  return degrees * (std::numbers::pi / 180);
+}
+
+double to_degrees(double radians) {
+  return invert_exactly(to_radians, radians, radians * (180 / std::numbers::pi));
+}
+
+Codec<float> degrees_single(const Range& range) {
+  Codec<float> codec = single(range);
+  const auto forward = [](double degrees) { return static_cast<float>(to_radians(degrees)); };
+  codec.parse = [forward, held = single_range(range)](const Place& place, const TomlValue& value) {
+    return forward(parse_number(place, value, held));
+  };
+  codec.print = [forward](const float& radians) {
+    return print_number(invert_exactly(forward, radians, static_cast<double>(radians) * (180 / std::numbers::pi)));
+  };
+  return codec;
+}
+
+std::size_t parse_choice(const Place& place, const TomlValue& value, const std::vector<std::string>& names) {
+  if (value.text() == nullptr) throw value_error(place, value, "it is " + kind_name(value) + ", not text");
+  const auto found = std::find(names.begin(), names.end(), *value.text());
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  const std::string nearest = nearest_name(*value.text(), names);
+  throw value_error(place, value, "it is none of the choices",
+                    nearest.empty() ? "" : fmt::format("Did you mean \"{}\"?", nearest));
+}
+
+std::string choices_text(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) out += i + 1 == names.size() ? " or " : ", ";
+    out += "\"" + names[i] + "\"";
+  }
+  return out;
+}
+
+void check_key_frames(const Place& place, const TomlValue& list, const std::vector<double>& frames) {
+  if (frames.empty())
+    throw value_error(place, list, "the list has no key", "Add a key { frame = 1, ... }, or leave the field out.");
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    if (frames[i] <= frames[i - 1]) {
+      const TomlValue& item = (*list.array())[i];
+      throw value_error(
+          place.part(fmt::format("[{}]", i)), item,
+          fmt::format("its frame {} does not come after the frame {} of the key before it", frames[i], frames[i - 1]),
+          "Sort the keys by frame, one key a frame.");
+    }
+}
+
+Codec<Ease> ease_codec() {
+  return choice<Ease>({{"constant", Ease::Constant}, {"linear", Ease::Linear}, {"smooth", Ease::Smooth}});
+}
+
+}  // namespace softreel

@@ -1,0 +1,136 @@
+#include "tool/shot/schema.h"
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "tool/shot/schema_tables.h"
+
+namespace softreel {
+namespace {
+
+/// The path of a field in the table for a path of a shot: names and positions become '*' and '[]'.
+std::string pattern_of(const std::string& path) {
+  std::string pattern;
+  bool in_index = false;
+  for (const char c : path) {
+    if (c == ']') in_index = false;
+    if (!in_index) pattern += c;
+    if (c == '[') in_index = true;
+  }
+  for (const std::string table : {"body.", "material."}) {
+    if (pattern.rfind(table, 0) != 0) continue;
+    const std::size_t dot = pattern.find('.', table.size());
+    pattern = table + "*" + (dot == std::string::npos ? "" : pattern.substr(dot));
+  }
+  return pattern;
+}
+
+const FieldText* find_text(const std::string& pattern) {
+  for (const FieldText& text : field_texts())
+    if (text.path == pattern) return &text;
+  return nullptr;
+}
+
+/// The heading of a table as a file spells it: "[[body.NAME.pin]]".
+std::string heading(const FieldText& table) {
+  std::string path = table.path;
+  for (std::size_t at = path.find('*'); at != std::string::npos; at = path.find('*')) path.replace(at, 1, "NAME");
+  if (table.type == "tables by name") path += ".NAME";
+  for (std::size_t at = path.find("[]"); at != std::string::npos; at = path.find("[]")) path.erase(at, 2);
+  return table.type == "list of tables" ? "[[" + path + "]]" : "[" + path + "]";
+}
+
+/// Markdown tables split cells at bars.
+std::string cell(std::string text) {
+  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
+    text.replace(at, 1, "\\|");
+  return text;
+}
+
+/// How the paths of the fields directly in a table begin.
+std::string inner_prefix(const FieldText& table) {
+  if (table.type == "tables by name") return table.path + ".*.";
+  return table.path + (table.type == "list of tables" ? "[]." : ".");
+}
+
+/// Tables with a heading of their own; those inside a selection are written in place.
+bool has_heading(const FieldText& text) {
+  return text.is_table && text.path.find("select") == std::string::npos;
+}
+
+void append_row(const FieldText& text, const std::string& prefix, std::string& out) {
+  out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", text.path.substr(prefix.size()), cell(text.type),
+                     cell(text.unit), cell(text.default_value), cell(text.accepted), cell(text.sentence));
+}
+
+/// All fields whose innermost table with a heading is this one.
+void append_rows(const FieldText* table, std::string& out) {
+  const std::string prefix = table == nullptr ? "" : inner_prefix(*table);
+  out += "\n| field | type | unit | default | accepted | meaning |\n|---|---|---|---|---|---|\n";
+  for (const FieldText& text : field_texts()) {
+    if (text.path.rfind(prefix, 0) != 0 || has_heading(text)) continue;
+    bool deeper = false;
+    for (const FieldText& other : field_texts()) {
+      const bool inside = has_heading(other) && text.path.rfind(inner_prefix(other), 0) == 0;
+      deeper = deeper || (inside && inner_prefix(other).size() > prefix.size());
+    }
+    if (!deeper) append_row(text, prefix, out);
+  }
+}
+
+}  // namespace
+
+const std::vector<FieldText>& field_texts() {
+  static const std::vector<FieldText> texts = table_texts(shot_table(), "");
+  return texts;
+}
+
+std::string shot_reference() {
+  std::string out = "# Fields of a shot\n";
+  append_rows(nullptr, out);
+  for (const FieldText& text : field_texts()) {
+    if (!has_heading(text)) continue;
+    out += fmt::format("\n## `{}`\n\n{}\n", heading(text), text.sentence);
+    append_rows(&text, out);
+  }
+  return out;
+}
+
+std::vector<std::string> field_paths() {
+  std::vector<std::string> paths;
+  for (const FieldText& text : field_texts())
+    if (!text.is_table) paths.push_back(text.path);
+  return paths;
+}
+
+std::string explain_field(const std::string& path) {
+  std::string pattern = pattern_of(path);
+  const FieldText* text = find_text(pattern);
+  if (text == nullptr && path.rfind("body.", 0) == 0)
+    text = find_text(pattern = "body.*." + pattern_of("x." + path.substr(5)).substr(2));
+  if (text == nullptr) text = find_text(path);
+  if (text == nullptr) {
+    std::vector<std::string> known;
+    for (const FieldText& one : field_texts()) known.push_back(one.path);
+    throw input_error(
+        fmt::format("{} is wrong because a shot has no such field.\n  Accepted: a path such as body.*.tets or "
+                    "camera.margin. Look it up in the reference of fields.{}",
+                    path, suggestion(pattern, known)));
+  }
+  std::string out = fmt::format("{}: {}\n", text->path, text->sentence);
+  if (text->is_table) {
+    out += "  Fields:";
+    const std::string prefix = inner_prefix(*text);
+    for (const FieldText& one : field_texts())
+      if (one.path.rfind(prefix, 0) == 0 && one.path.find_first_of(".[", prefix.size()) == std::string::npos)
+        out += " " + one.path.substr(prefix.size());
+    return out + "\n";
+  }
+  out += fmt::format("  Type: {}{}\n  Accepted: {}\n", text->type, text->unit.empty() ? "" : ", in " + text->unit,
+                     text->accepted);
+  if (!text->default_value.empty()) out += fmt::format("  Default: {}\n", text->default_value);
+  return out;
+}
+
+}  // namespace softreel

@@ -1,0 +1,190 @@
+// The tables of bodies: placement, size of the tetrahedra, regions, pins, pulls, materials.
+#include <fmt/format.h>
+
+#include "tool/shot/codecs.h"
+#include "tool/shot/schema_tables.h"
+#include "tool/shot/shot_select.h"
+
+namespace softreel {
+namespace {
+
+constexpr std::int64_t kDefaultTets = 20000;
+constexpr std::int64_t kMostTets = 500000000;
+/// From 0.5 on the material is incompressible, which has no finite stiffness; near it the numbers degrade.
+constexpr Range kPoissonRatio{0, 0.499, false};
+
+/// A track that moves nothing.
+Track<Transform> resting_track() {
+  return Track<Transform>{{{0, Transform{}, Ease::Smooth}}};
+}
+
+const Table<RegionSettings>& region_table() {
+  static const Table<RegionSettings> table = [] {
+    using R = RegionSettings;
+    Table<R> t;
+    t.sentence = "A part of the body with another stiffness or material; later regions win where they overlap.";
+    t.require("select", &R::select, selection_codec(), "", "Which part: tetrahedra whose centroid it takes.")
+        .add("material", &R::material, optional_of(text()), "", "Name of the region's material.")
+        .add("stiffness", &R::stiffness, optional_of(number(kPositive)), "",
+             "Factor on the Young's modulus of the body.");
+    t.check = [](const Place& place, const TomlValue& value, RegionSettings& region) {
+      check_alternatives(place, value, "body.*.region[]");
+      if (!region.material && !region.stiffness)
+        throw value_error(place, value, "it changes nothing", "Give it a material or a stiffness.");
+    };
+    return t;
+  }();
+  return table;
+}
+
+/// The fields that pins and pulls share.
+template <typename S>
+void add_motion_fields(Table<S>& table) {
+  Field<S> keys;
+  const Codec<Motion> codec = motion_codec();
+  keys.text = {"keys",
+               codec.type,
+               "",
+               "the points stay where they rest",
+               codec.accepted,
+               "Where the points are taken, frame by frame; before the first key and after the last, that key holds.",
+               false,
+               false};
+  keys.parts = codec.parts;
+  keys.read = [parse = codec.parse](const Place& place, const TomlValue& value, S& out) {
+    Motion motion = parse(place, value);
+    out.keys = std::move(motion.track);
+    out.pivot_given = motion.pivot_given;
+  };
+  keys.write = [print = codec.print](const S& in) { return print({in.keys, in.pivot_given}); };
+  table.fields.push_back(std::move(keys));
+  table
+      .add("keys_unit", &S::keys_in_box, choice<bool>({{"m", false}, {"box", true}}), "",
+           "What translate and pivot of the keys count: metres, or heights and coordinates of the placed body's box.")
+      .add("active", &S::active, frame_ranges_codec(), "frames", "When it holds, both frames included.", "always");
+}
+
+const Table<PinSettings>& pin_table() {
+  static const Table<PinSettings> table = [] {
+    Table<PinSettings> t;
+    t.sentence = "Points that are held exactly, where they rest or where keys take them.";
+    t.require("select", &PinSettings::select, selection_codec(), "", "Which points of the surface are held.");
+    add_motion_fields(t);
+    t.check = [](const Place&, const TomlValue&, PinSettings& pin) {
+      if (pin.keys.keys.empty()) pin.keys = resting_track();
+    };
+    return t;
+  }();
+  return table;
+}
+
+const Table<PullSettings>& pull_table() {
+  static const Table<PullSettings> table = [] {
+    using P = PullSettings;
+    Table<P> t;
+    t.sentence = "Springs from points to where keys take them; the points give way as far as the body resists.";
+    t.require("select", &P::select, selection_codec(), "", "Which points of the surface are pulled.")
+        .require("stiffness", &P::stiffness, keyed(number(kNotNegative), "N/m"), "N/m", "Of all springs together.");
+    add_motion_fields(t);
+    t.add("falloff", &P::falloff, number(kNotNegative), "m",
+          "Springs weaken smoothly to nothing at this distance from the selection's centre; 0: all are equal.")
+        .add("max_force", &P::max_force, number(kNotNegative), "N", "Of all springs together; 0: no limit.");
+    t.check = [](const Place&, const TomlValue&, PullSettings& pull) {
+      if (pull.keys.keys.empty()) pull.keys = resting_track();
+    };
+    return t;
+  }();
+  return table;
+}
+
+/// Fields that say where the body stands and how finely it is divided.
+void add_placement_fields(Table<BodySettings>& t) {
+  using B = BodySettings;
+  t.require("mesh", &B::mesh, file_path(), "", "The surface: PLY, OBJ, STL, glTF and what else assimp reads.")
+      .add("up", &B::up, choice<UpAxis>({{"x", UpAxis::X}, {"y", UpAxis::Y}, {"z", UpAxis::Z}}), "",
+           "The file's axis that points up.")
+      .add("fit", &B::fit, absent_if_zero(number(kPositive)), "m",
+           "Scales the body to this height and stands it on the ground, centred; instead of scale.", "as in the file")
+      .add("scale", &B::scale, number(kPositive), "", "Factor on the file's numbers; instead of fit.")
+      .add("translate", &B::translate, vector_of<Vec3>(kAnyNumber), "m", "Moves the body, after fit and rotation.")
+      .add("rotate_deg", &B::rotate_deg, vector_of<Vec3>(kAnyNumber), "degrees",
+           "Turns the body about the fixed axes: x first, then y, then z.")
+      .add("material", &B::material, text(), "", "Name of a [material.NAME].",
+           "the only material, or the one named \"default\", which is built in where there is none")
+      .add("tets", &B::tets, absent_if_zero(whole<std::int64_t>(1, kMostTets)), "",
+           "About how many tetrahedra fill the body; instead of edge.", std::to_string(kDefaultTets))
+      .add("edge", &B::edge, absent_if_zero(number(kPositive)), "m", "Longest edge of the tetrahedra; instead of tets.",
+           "from tets");
+}
+
+void check_body(const Place& place, const TomlValue& value, BodySettings& body) {
+  check_alternatives(place, value, "body.*");
+  if (body.edge == 0 && body.tets == 0) body.tets = kDefaultTets;
+  body.mesh_origin = value.find("mesh")->origin;
+}
+
+}  // namespace
+
+const Table<BodySettings>& body_table() {
+  static const Table<BodySettings> table = [] {
+    using B = BodySettings;
+    Table<B> t;
+    t.sentence = "A soft body: a surface that is filled with tetrahedra.";
+    add_placement_fields(t);
+    t.add_list("region", &B::regions, region_table())
+        .add_list("pin", &B::pins, pin_table())
+        .add_list("pull", &B::pulls, pull_table());
+    // Where the body is fitted, there is no scale to write.
+    for (Field<B>& field : t.fields)
+      if (field.text.path == "scale")
+        field.write = [write = field.write](const B& body) { return body.fit > 0 ? std::nullopt : write(body); };
+    t.check = check_body;
+    return t;
+  }();
+  return table;
+}
+
+const Table<MaterialSettings>& material_table() {
+  static const Table<MaterialSettings> table = [] {
+    Table<MaterialSettings> t;
+    t.sentence = "How a body resists deformation and how it looks.";
+    const auto physics = [&t](const char* name, double ElementMaterial::*member, const Range& range, const char* unit,
+                              const char* sentence) {
+      t.add(
+          name, [member](auto& m) -> auto& { return m.physics.*member; }, number(range), unit, sentence);
+    };
+    using E = ElementMaterial;
+    physics("youngs_modulus", &E::youngs_modulus, kPositive, "Pa",
+            "Stiffness: stress per strain. Gel 1e4, rubber 1e6.");
+    physics("poisson_ratio", &E::poisson_ratio, kPoissonRatio, "",
+            "How much it thins when stretched: 0 like cork, 0.3 if you do not know, 0.45 to 0.49 like gel and flesh.");
+    physics("density", &E::density, kPositive, "kg/m^3", "Mass per volume; water has 1000.");
+    physics("damping_mass", &E::damping_mass, kNotNegative, "1/s", "Slows all motion, as in syrup (Rayleigh).");
+    physics("damping_stiffness", &E::damping_stiffness, kNotNegative, "s", "Slows deformation only (Rayleigh).");
+    const auto share = [&t](const char* name, float Appearance::*member, const char* sentence) {
+      t.add(
+          name, [member](auto& m) -> auto& { return m.appearance.*member; }, single(kShare), "", sentence);
+    };
+    const auto color = [&t](const char* name, Vec3f Appearance::*member, const Range& range, const char* unit,
+                            const char* sentence) {
+      t.add(
+          name, [member](auto& m) -> auto& { return m.appearance.*member; }, vector_of<Vec3f>(range, "[r, g, b]"), unit,
+          sentence);
+    };
+    using A = Appearance;
+    color("base_color", &A::base_color, kShare, "linear", "Share of the light that comes back.");
+    share("roughness", &A::roughness, "0 mirrors, 1 is matte.");
+    share("metallic", &A::metallic, "How much of it is metal.");
+    share("specular", &A::specular, "Strength of the clear coat: it reflects 0.08 of this head-on.");
+    share("transmission", &A::transmission, "How much of what is not metal is glass.");
+    t.add(
+        "ior", [](auto& m) -> auto& { return m.appearance.ior; }, single({1, 5, false}), "",
+        "Refractive index of the glass.");
+    color("absorption", &A::absorption, kNotNegative, "1/m", "How fast the glass takes light in.");
+    color("emission", &A::emission, kNotNegative, "W/(m^2 sr)", "Light that the surface gives off.");
+    return t;
+  }();
+  return table;
+}
+
+}  // namespace softreel

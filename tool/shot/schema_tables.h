@@ -1,0 +1,35 @@
+/// The tables that make up the schema, one function each; they live as long as the program and never change.
+#pragma once
+
+#include "tool/shot/schema_table.h"
+#include "tool/shot/shot.h"
+
+namespace softreel {
+
+/// The whole document.
+const Table<Shot>& shot_table();
+
+const Table<BodySettings>& body_table();
+const Table<MaterialSettings>& material_table();
+
+const Table<CameraSettings>& camera_table();
+const Table<LightSettings>& light_table();
+const Table<Shot>& environment_table();
+const Table<Ground>& ground_table();
+const Table<RenderSettings>& render_table();
+const Table<OutputSettings>& output_table();
+
+/// Fields of a table of which at most one may be given; in a later layer one takes the place of the others.
+struct Alternatives {
+  std::string table;  ///< "body.*"
+  std::vector<std::string> fields;
+};
+const std::vector<Alternatives>& alternatives();
+
+/// Throws the error for two alternatives of a table that are both given; `pattern` is the table's path in the schema.
+void check_alternatives(const Place& place, const TomlValue& value, const std::string& pattern);
+
+/// Makes the renderer's lights of shot.lights.
+void resolve_lights(Shot& shot);
+
+}  // namespace softreel
