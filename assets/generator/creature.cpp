@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "assets/generator/distance.h"
+#include "assets/generator/features.h"
 #include "assets/generator/sculpture.h"
 
 namespace softreel::sculpt {
@@ -17,16 +20,17 @@ class Creature {
   double tail(const Vec3& p) const { return tail_(p); }
   double arms(const Vec3& p) const { return std::min(left_arm(p), right_arm(p)); }
   static double eye(const Vec3& p) { return sphere(mirrored(to_head(p)), kEye, kEyeRadius); }
-  static Vec3 to_head(const Vec3& p) { return turned(2, -6, 5).transpose() * (p - kNeck) + kNeck; }
+  static Vec3 to_head(const Vec3& p) { return turned(0, -6, 6).transpose() * (p - kNeck) / kHeadScale + kNeck; }
 
  private:
-  static inline const Vec3 kNeck{0, 0.60, 0.02}, kEye{0.100, 0.805, 0.135};
-  static constexpr double kEyeRadius = 0.066;
+  static inline const Vec3 kNeck{0, 0.60, 0.02}, kEye{0.098, 0.795, 0.125};
+  static constexpr double kEyeRadius = 0.074, kHeadScale = 1.15;
 
   double feet(const Vec3& p) const;
   double trunk(const Vec3& p) const;
   double left_arm(const Vec3& p) const;
   double right_arm(const Vec3& p) const;
+  double tail_leaf(const Vec3& p) const;
   double crest(const Vec3& p) const;
   double skull(const Vec3& q) const;
   double ear(const Vec3& q) const;
@@ -36,17 +40,18 @@ class Creature {
   Limb leg_{{{{0.150, 0.06, 0.01}, 0.085}, {{0.150, 0.15, 0.0}, 0.090}, {{0.12, 0.27, -0.01}, 0.125}}};
   Limb neck_{{{{0, 0.46, -0.01}, 0.115}, {{0, 0.55, 0.0}, 0.09}, {{0, 0.66, 0.02}, 0.1}}};
   Limb left_arm_{{{{0.11, 0.505, 0.0}, 0.068}, {{0.215, 0.465, 0.01}, 0.058}, {{0.305, 0.395, 0.055}, 0.052}}};
-  Limb right_arm_{{{{-0.11, 0.505, 0.0}, 0.068}, {{-0.21, 0.48, 0.02}, 0.058}, {{-0.295, 0.55, 0.075}, 0.052}}};
+  Limb right_arm_{{{{-0.11, 0.505, 0.0}, 0.068}, {{-0.235, 0.465, 0.02}, 0.058}, {{-0.345, 0.535, 0.075}, 0.052}}};
   Limb tail_{{{{0, 0.28, -0.08}, 0.135},
-              {{-0.02, 0.17, -0.23}, 0.105},
-              {{-0.10, 0.125, -0.36}, 0.080},
-              {{-0.23, 0.16, -0.42}, 0.062},
-              {{-0.32, 0.27, -0.39}, 0.050}}};
-  Limb smile_{{{{-0.125, 0.700, 0.190}, 0.007},
-               {{-0.085, 0.668, 0.250}, 0.012},
-               {{0.0, 0.655, 0.290}, 0.013},
-               {{0.085, 0.668, 0.250}, 0.012},
-               {{0.125, 0.700, 0.190}, 0.007}}};
+              {{-0.02, 0.17, -0.23}, 0.100},
+              {{-0.11, 0.13, -0.36}, 0.074},
+              {{-0.25, 0.165, -0.42}, 0.056},
+              {{-0.35, 0.27, -0.39}, 0.042},
+              {{-0.36, 0.36, -0.36}, 0.036}}};
+  std::vector<std::pair<Vec3, Vec3>> spikes_{{{0, 0.505, -0.090}, {0, 0.535, -0.165}},
+                                             {{0, 0.405, -0.145}, {0, 0.435, -0.230}},
+                                             {{0, 0.300, -0.190}, {0, 0.345, -0.275}},
+                                             {{-0.02, 0.225, -0.265}, {-0.03, 0.300, -0.325}},
+                                             {{-0.085, 0.175, -0.350}, {-0.095, 0.250, -0.405}}};
 };
 
 double Creature::feet(const Vec3& p) const {
@@ -63,12 +68,13 @@ double Creature::feet(const Vec3& p) const {
 double Creature::trunk(const Vec3& p) const {
   double d = ellipsoid(p, {0, 0.33, -0.01}, {0.195, 0.185, 0.17});
   d = smooth_union(d, ellipsoid(p, {0, 0.47, 0.0}, {0.145, 0.13, 0.12}), 0.12);
-  d = smooth_union(d, ellipsoid(p, {0, 0.33, 0.065}, {0.160, 0.165, 0.13}), 0.04);
-  // Shallow rolls across the belly, fading towards its sides.
-  const double side = p.x() / 0.15, front = (p.z() - 0.08) / 0.05;
-  const double mask = std::max(0.0, 1 - side * side) * std::clamp(front, 0.0, 1.0);
-  const double wave = std::cos((p.y() - 0.30 - 0.5 * p.x() * p.x()) * 2 * 3.14159265358979 / 0.062);
-  return d - 0.005 * mask * mask * wave;
+  d = smooth_union(d, ellipsoid(p, {0, 0.315, 0.075}, {0.165, 0.160, 0.135}), 0.04);
+  // Narrow grooves part the belly into plates; they fade out towards its sides.
+  const double side = p.x() / 0.13, front = (p.z() - 0.09) / 0.04, low = (0.46 - p.y()) / 0.04;
+  const double mask = std::max(0.0, 1 - side * side) * std::clamp(front, 0.0, 1.0) * std::clamp(low, 0.0, 1.0);
+  const double row = (p.y() - 0.7 * p.x() * p.x()) / 0.058;
+  const double off = 0.058 * (row - std::round(row)) / 0.011;
+  return d + 0.006 * std::min(1.0, 2 * mask) * std::exp(-off * off);
 }
 
 double Creature::left_arm(const Vec3& p) const {
@@ -79,20 +85,21 @@ double Creature::left_arm(const Vec3& p) const {
 }
 
 double Creature::right_arm(const Vec3& p) const {
-  double d = smooth_union(right_arm_(p), ellipsoid(p, {-0.315, 0.60, 0.09}, {0.058, 0.06, 0.05}), 0.03);
-  const Vec3 finger[] = {{-0.270, 0.640, 0.115}, {-0.317, 0.665, 0.105}, {-0.362, 0.640, 0.095}};
+  double d = smooth_union(right_arm_(p), ellipsoid(p, {-0.375, 0.585, 0.09}, {0.058, 0.06, 0.05}), 0.03);
+  const Vec3 finger[] = {{-0.335, 0.632, 0.112}, {-0.388, 0.650, 0.102}, {-0.432, 0.618, 0.092}};
   for (const Vec3& tip : finger) d = smooth_union(d, sphere(p, tip, 0.034), 0.022);
   return d;
 }
 
+double Creature::tail_leaf(const Vec3& p) const {
+  const Vec3 q = turned(-15, 10, 5).transpose() * (p - Vec3(-0.355, 0.415, -0.335));
+  double d = ellipsoid(mirrored(q), {0.034, -0.012, 0}, {0.062, 0.062, 0.042}, turned(0, 0, -35));
+  return smooth_union(d, round_cone(q, {{0, 0.0, 0}, 0.045}, {{0, 0.085, 0}, 0.024}), 0.05);
+}
+
 double Creature::crest(const Vec3& p) const {
-  const Station bump[] = {{{0, 0.50, -0.125}, 0.045},
-                          {{0, 0.395, -0.185}, 0.050},
-                          {{-0.005, 0.285, -0.225}, 0.050},
-                          {{-0.06, 0.215, -0.315}, 0.045},
-                          {{-0.165, 0.205, -0.415}, 0.040}};
   double d = 1e300;
-  for (const Station& s : bump) d = std::min(d, sphere(p, s.position, s.radius));
+  for (const auto& [root, tip] : spikes_) d = std::min(d, round_cone(p, {root, 0.050}, {tip, 0.024}));
   return d;
 }
 
@@ -102,8 +109,8 @@ double Creature::skull(const Vec3& q) const {
   d = smooth_union(d, ellipsoid(q, {0, 0.70, 0.165}, {0.125, 0.080, 0.115}), 0.07);
   const Vec3 m = mirrored(q);
   d = smooth_union(d, round_cone(m, {{0.075, 0.90, 0.0}, 0.045}, {{0.105, 0.985, -0.035}, 0.034}), 0.03);
-  d = smooth_union(d, sphere(q, {0, 0.915, -0.07}, 0.045), 0.03);
-  return smooth_union(d, sphere(q, {0, 0.83, -0.14}, 0.048), 0.03);
+  d = smooth_union(d, round_cone(q, {{0, 0.90, -0.06}, 0.048}, {{0, 0.955, -0.105}, 0.024}), 0.03);
+  return smooth_union(d, round_cone(q, {{0, 0.82, -0.12}, 0.050}, {{0, 0.855, -0.195}, 0.024}), 0.03);
 }
 
 double Creature::ear(const Vec3& q) const {
@@ -115,31 +122,35 @@ double Creature::ear(const Vec3& q) const {
 
 double Creature::with_face(double d, const Vec3& q) const {
   const Vec3 m = mirrored(q);
-  d = smooth_difference(d, smile_(q), 0.016);
+  d += smile_depth(q, {0.80, 0.138, 0.85, 0.1, 0.0080, 0.010});
+  d = smooth_difference(d, sphere(m, {0.108, 0.712, 0.205}, 0.012), 0.015);  // dimples
   d = smooth_union(d, ellipsoid(m, {0.048, 0.745, 0.252}, {0.030, 0.022, 0.026}), 0.02);
   return smooth_difference(d, sphere(m, {0.050, 0.748, 0.278}, 0.013), 0.01);
 }
 
 double Creature::with_eyes(double d, const Vec3& q) const {
-  const Vec3 m = mirrored(q);
-  const Vec3 look = Vec3(0.22, 0.02, 1.0).normalized();
-  d = smooth_union(d, sphere(m, kEye, kEyeRadius + 0.012), 0.05);  // brow and cheek swell towards the eye
-  d = smooth_difference(d, ellipsoid(m, kEye + 0.075 * look, {0.058, 0.062, 0.05}), 0.02);
-  double ball = sphere(m, kEye, kEyeRadius);
-  ball = smooth_difference(ball, sphere(m, kEye + 1.02 * kEyeRadius * look, 0.030), 0.008);
-  return smooth_union(d, ball, 0.006);
+  Eye eye;
+  eye.center = kEye;
+  eye.radius = kEyeRadius;
+  eye.look = Vec3(0.14, 0.02, 1.0).normalized();
+  eye.lid_normal = Vec3(0.22, 1.0, 0.10).normalized();
+  eye.upper = 0.050;
+  eye.lower = 0.060;
+  eye.pupil = 0.040;
+  eye.ramp = 0.011;
+  return smooth_union(d, eye_ball(mirrored(q), eye), 0.015);
 }
 
 double Creature::head(const Vec3& p) const {
   const Vec3 q = to_head(p);
-  return with_eyes(with_face(smooth_union(skull(q), ear(q), 0.04), q), q);
+  return kHeadScale * with_eyes(with_face(smooth_union(skull(q), ear(q), 0.04), q), q);
 }
 
 double Creature::operator()(const Vec3& p) const {
   double d = trunk(p);
   d = smooth_union(d, feet(p), 0.05);
   d = smooth_union(d, tail_(p), 0.08);
-  d = smooth_union(d, ellipsoid(p, {-0.335, 0.31, -0.375}, {0.060, 0.085, 0.060}), 0.04);
+  d = smooth_union(d, tail_leaf(p), 0.03);
   d = smooth_union(d, neck_(p), 0.06);
   d = smooth_union(d, std::min(left_arm(p), right_arm(p)), 0.035);
   d = smooth_union(d, crest(p), 0.03);
@@ -153,9 +164,10 @@ Sculpture make_creature() {
   Sculpture s;
   s.name = "creature";
   s.distance = [creature](const Vec3& p) { return (*creature)(p); };
-  s.bounds.add({-0.50, -0.04, -0.53});
-  s.bounds.add({0.52, 1.08, 0.36});
-  s.cell = 0.0102;
+  s.bounds.add({-0.56, -0.04, -0.53});
+  s.bounds.add({0.58, 1.13, 0.42});
+  s.cell = 0.0112;
+  s.lens = {{0.0, 0.80, 0.18}, 0.36, 0.5};
   s.parts = {{"feet", [](const Vec3& p) { return p.y() < 0.05; }},
              {"knees", [](const Vec3& p) { return p.y() > 0.10 && p.y() < 0.20 && p.z() > -0.12; }},
              {"arms", [creature](const Vec3& p) { return std::abs(p.x()) > 0.17 && creature->arms(p) < 0.01; }},

@@ -1,17 +1,18 @@
-/// Signed distances of a sculpture at the nodes of a cubic lattice.
+/// Signed distances of a sculpture at the nodes of a lattice of cubes, drawn together by its lens.
 #pragma once
 
 #include <array>
 #include <vector>
 
 #include "assets/generator/sculpture.h"
+#include "core/base/parallel.h"
 
 namespace softreel::sculpt {
 
 /// Samples blocks of cells near the surface; elsewhere only the sign is right.
 class Lattice {
  public:
-  explicit Lattice(const Sculpture& sculpture);
+  Lattice(const Sculpture& sculpture, const Threads& threads);
 
   std::size_t size() const { return values_.size(); }
   std::size_t index(const std::array<int, 3>& node) const {
@@ -21,9 +22,8 @@ class Lattice {
            static_cast<std::size_t>(node[0]);
   }
   double value(const std::array<int, 3>& node) const { return values_[index(node)]; }
-  Vec3 point(const std::array<int, 3>& node) const {
-    return origin_ + cell_ * Vec3(double(node[0]), double(node[1]), double(node[2]));
-  }
+  /// Where a node lies, seen through the sculpture's lens.
+  Vec3 point(const std::array<int, 3>& node) const;
 
   /// Calls visit(cell) for each cell, named by its lowest node, in order of memory.
   template <typename Visit>
@@ -38,6 +38,7 @@ class Lattice {
 
   Vec3 origin_;
   double cell_;
+  Lens lens_;
   std::array<int, 3> nodes_{};
   std::vector<double> values_;
 };

@@ -16,11 +16,19 @@ struct Part {
   std::function<bool(const Vec3&)> contains;
 };
 
+/// Where the lattice is finer: it shrinks towards `center` by `strength` at most, and not at all beyond `radius`.
+struct Lens {
+  Vec3 center = Vec3::Zero();
+  double radius = 1;    ///< m
+  double strength = 0;  ///< in [0, 0.9]: the cells at the centre are 1 - strength as large
+};
+
 struct Sculpture {
   std::string name;                             ///< of the file, without ending
   std::function<double(const Vec3&)> distance;  ///< m, negative inside
   Bounds bounds;                                ///< holds the solid with a few cells to spare
   double cell = 0.01;                           ///< m, edge of the sampling lattice
+  Lens lens;
   std::vector<Part> parts;
 };
 

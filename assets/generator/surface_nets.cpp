@@ -32,72 +32,97 @@ Cell corner_node(const Cell& cell, int k) {
   return {cell[0] + (k & 1), cell[1] + (k >> 1 & 1), cell[2] + (k >> 2)};
 }
 
-/// Which piece of the solid each corner of a cell belongs to: corners inside that the cell's edges join are one piece.
-struct Pieces {
-  std::array<int, 8> of_corner;  ///< -1: outside
-  int count = 0;                 ///< 0 too where all corners are inside: no surface
-};
-
-Pieces find_pieces(const Lattice& lattice, const Cell& cell) {
-  Pieces pieces;
-  pieces.of_corner.fill(-1);
-  std::array<bool, 8> inside{};
-  for (int k = 0; k < 8; ++k) inside[static_cast<std::size_t>(k)] = lattice.value(corner_node(cell, k)) < 0;
-  if (std::all_of(inside.begin(), inside.end(), [](bool b) { return b; })) return pieces;
-  for (int seed = 0; seed < 8; ++seed) {
-    if (!inside[static_cast<std::size_t>(seed)] || pieces.of_corner[static_cast<std::size_t>(seed)] >= 0) continue;
-    std::vector<int> open{seed};
-    pieces.of_corner[static_cast<std::size_t>(seed)] = pieces.count;
-    while (!open.empty()) {
-      const int k = open.back();
-      open.pop_back();
-      for (const int bit : {1, 2, 4}) {
-        const auto next = static_cast<std::size_t>(k ^ bit);
-        if (!inside[next] || pieces.of_corner[next] >= 0) continue;
-        pieces.of_corner[next] = pieces.count;
-        open.push_back(k ^ bit);
-      }
-    }
-    ++pieces.count;
-  }
-  return pieces;
+/// The edge from corner `low` of a cell along an axis, where low's bit of that axis is 0: one of twelve.
+std::size_t edge_slot(int low, int axis) {
+  return static_cast<std::size_t>(axis * 8 + low);
 }
 
-/// Mean of the points where the surface of one piece cuts the twelve edges of a cell.
-Vec3 piece_point(const Lattice& lattice, const Cell& cell, const Pieces& pieces, int piece) {
+/// The sheets of surface in a cell, as labels of the lattice edges that they cut.
+struct Sheets {
+  std::array<int, 24> of_edge;  ///< by edge_slot; -1: not cut
+  int count = 0;
+};
+
+/// Joins the cut edges of the cell's face on the given side of an axis, as the cell beyond it does too: the only two
+/// with one another; of four, those round each inside corner. So sheets fit together and meet each edge once.
+void join_across_face(const std::array<bool, 8>& inside, int axis, int side, Sheets& sheets) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3, base = side << axis;
+  const auto corner = [&](int i, int j) { return base | i << u | j << v; };
+  const std::array<std::size_t, 4> edges{edge_slot(corner(0, 0), u), edge_slot(corner(0, 1), u),
+                                         edge_slot(corner(0, 0), v), edge_slot(corner(1, 0), v)};
+  const auto join = [&](std::size_t a, std::size_t b) {
+    const int from = sheets.of_edge[b], to = sheets.of_edge[a];
+    for (int& label : sheets.of_edge)
+      if (label == from) label = to;
+  };
+  std::vector<std::size_t> cut;
+  for (const std::size_t edge : edges)
+    if (sheets.of_edge[edge] >= 0) cut.push_back(edge);
+  if (cut.size() == 2) join(cut[0], cut[1]);
+  if (cut.size() < 4) return;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      if (inside[static_cast<std::size_t>(corner(i, j))]) join(edge_slot(corner(0, j), u), edge_slot(corner(i, 0), v));
+}
+
+Sheets find_sheets(const Lattice& lattice, const Cell& cell) {
+  Sheets sheets;
+  sheets.of_edge.fill(-1);
+  std::array<bool, 8> inside{};
+  for (int k = 0; k < 8; ++k) inside[static_cast<std::size_t>(k)] = lattice.value(corner_node(cell, k)) < 0;
+  if (std::equal(inside.begin() + 1, inside.end(), inside.begin())) return sheets;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int low = 0; low < 8; ++low) {
+      if (low >> axis & 1) continue;
+      const std::size_t slot = edge_slot(low, axis);
+      if (inside[static_cast<std::size_t>(low)] != inside[static_cast<std::size_t>(low | 1 << axis)])
+        sheets.of_edge[slot] = static_cast<int>(slot);
+    }
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, 1}) join_across_face(inside, axis, side, sheets);
+  std::array<int, 24> number{};
+  number.fill(-1);
+  for (int& label : sheets.of_edge) {
+    if (label < 0) continue;
+    int& n = number[static_cast<std::size_t>(label)];
+    if (n < 0) n = sheets.count++;
+    label = n;
+  }
+  return sheets;
+}
+
+/// Mean of the points where one sheet cuts the edges of a cell.
+Vec3 sheet_point(const Lattice& lattice, const Cell& cell, const Sheets& sheets, int sheet) {
   Vec3 sum = Vec3::Zero();
   int cuts = 0;
-  for (int k = 0; k < 8; ++k) {
-    if (pieces.of_corner[static_cast<std::size_t>(k)] != piece) continue;
-    for (const int bit : {1, 2, 4}) {
-      const Cell from = corner_node(cell, k), to = corner_node(cell, k ^ bit);
+  for (int axis = 0; axis < 3; ++axis)
+    for (int low = 0; low < 8; ++low) {
+      if (sheets.of_edge[edge_slot(low, axis)] != sheet) continue;
+      const Cell from = corner_node(cell, low), to = corner_node(cell, low | 1 << axis);
       const double a = lattice.value(from), b = lattice.value(to);
-      if (b < 0) continue;
       sum += lattice.point(from) + a / (a - b) * (lattice.point(to) - lattice.point(from));
       ++cuts;
     }
-  }
   return sum / cuts;
 }
 
 /// The quadrilateral round each cut lattice edge, counter-clockwise seen from outside.
 void add_quads(const Lattice& lattice, const std::vector<Index>& first_vertex, std::vector<Quad>& quads) {
   lattice.for_each_cell([&](const Cell& node) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3; ++axis) {
       Cell next = node;
-      next[axis] += 1;
+      next[static_cast<std::size_t>(axis)] += 1;
       const bool inside = lattice.value(node) < 0;
       if (inside == (lattice.value(next) < 0)) continue;
-      const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
       Quad quad{};
       constexpr std::array<std::array<int, 2>, 4> kRound{{{1, 1}, {0, 1}, {0, 0}, {1, 0}}};
       for (std::size_t k = 0; k < 4; ++k) {
         Cell cell = node;
-        cell[u] -= kRound[k][0];
-        cell[v] -= kRound[k][1];
-        const int corner = (kRound[k][0] << u) | (kRound[k][1] << v) | ((inside ? 0 : 1) << axis);
-        const int piece = find_pieces(lattice, cell).of_corner[static_cast<std::size_t>(corner)];
-        quad[k] = first_vertex[lattice.index(cell)] + piece;
+        cell[static_cast<std::size_t>(u)] -= kRound[k][0];
+        cell[static_cast<std::size_t>(v)] -= kRound[k][1];
+        const std::size_t slot = edge_slot(kRound[k][0] << u | kRound[k][1] << v, axis);
+        quad[k] = first_vertex[lattice.index(cell)] + find_sheets(lattice, cell).of_edge[slot];
       }
       if (!inside) std::reverse(quad.begin(), quad.end());
       quads.push_back(quad);
@@ -109,10 +134,10 @@ QuadMesh extract(const Lattice& lattice) {
   QuadMesh mesh;
   std::vector<Index> first_vertex(lattice.size(), -1);
   lattice.for_each_cell([&](const Cell& cell) {
-    const Pieces pieces = find_pieces(lattice, cell);
+    const Sheets sheets = find_sheets(lattice, cell);
     first_vertex[lattice.index(cell)] = static_cast<Index>(mesh.positions.size());
-    for (int piece = 0; piece < pieces.count; ++piece)
-      mesh.positions.push_back(piece_point(lattice, cell, pieces, piece));
+    for (int sheet = 0; sheet < sheets.count; ++sheet)
+      mesh.positions.push_back(sheet_point(lattice, cell, sheets, sheet));
   });
   add_quads(lattice, first_vertex, mesh.quads);
   return mesh;
@@ -140,8 +165,16 @@ Vec3 projected(const Sculpture& sculpture, Vec3 p, int steps) {
   return p;
 }
 
+/// Calls visit(v, position of v) for each vertex.
+template <typename Visit>
+void for_each_point(QuadMesh& mesh, const Threads& threads, const Visit& visit) {
+  threads.for_chunks(static_cast<std::int64_t>(mesh.positions.size()), 1024, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) visit(v, mesh.positions[v]);
+  });
+}
+
 /// Moves each vertex to the mean of its edge neighbours, along the surface only.
-void relax(const Sculpture& sculpture, QuadMesh& mesh) {
+void relax(const Sculpture& sculpture, QuadMesh& mesh, const Threads& threads) {
   std::vector<Vec3> sum(mesh.positions.size(), Vec3::Zero());
   std::vector<int> count(mesh.positions.size(), 0);
   for (const Quad& quad : mesh.quads)
@@ -149,11 +182,10 @@ void relax(const Sculpture& sculpture, QuadMesh& mesh) {
       sum[at(quad[k])] += mesh.positions[at(quad[(k + 1) % 4])] + mesh.positions[at(quad[(k + 3) % 4])];
       count[at(quad[k])] += 2;
     }
-  for (std::size_t v = 0; v < sum.size(); ++v) {
-    Vec3& p = mesh.positions[v];
+  for_each_point(mesh, threads, [&](std::size_t v, Vec3& p) {
     const Vec3 normal = gradient(sculpture, p).normalized(), move = sum[v] / count[v] - p;
     p = projected(sculpture, p + move - move.dot(normal) * normal, 1);
-  }
+  });
 }
 
 std::vector<Triangle> cut_quads(const QuadMesh& mesh) {
@@ -215,11 +247,14 @@ void check_closed(const std::string& name, const std::vector<Vec3>& positions, c
 
 }  // namespace
 
-SurfaceMesh mesh_surface(const Sculpture& sculpture, int relaxations) {
-  QuadMesh quads = extract(Lattice(sculpture));
-  for (Vec3& p : quads.positions) p = projected(sculpture, p, 2);
-  for (int round = 0; round < relaxations; ++round) relax(sculpture, quads);
-  for (Vec3& p : quads.positions) p = projected(sculpture, p, 2);
+SurfaceMesh mesh_surface(const Sculpture& sculpture, int relaxations, const Threads& threads) {
+  const auto project_all = [&](QuadMesh& mesh) {
+    for_each_point(mesh, threads, [&](std::size_t, Vec3& p) { p = projected(sculpture, p, 2); });
+  };
+  QuadMesh quads = extract(Lattice(sculpture, threads));
+  project_all(quads);
+  for (int round = 0; round < relaxations; ++round) relax(sculpture, quads, threads);
+  project_all(quads);
   SurfaceMesh mesh;
   mesh.positions = quads.positions;
   mesh.triangles = cut_quads(quads);
