@@ -29,6 +29,10 @@ void close_facet(SurfaceMesh& mesh) {
 
 SurfaceMesh read_binary(std::string_view bytes) {
   SurfaceMesh mesh;
+  const std::size_t facets = (bytes.size() - kHeaderBytes) / kFacetBytes;
+  mesh.positions.reserve(3 * facets);
+  mesh.polygons.offsets.reserve(facets + 1);
+  mesh.polygons.corner_vertices.reserve(3 * facets);
   for (std::size_t at = kHeaderBytes; at + kFacetBytes <= bytes.size(); at += kFacetBytes) {
     std::array<float, 9> corners;
     std::memcpy(corners.data(), bytes.data() + at + kNormalBytes, sizeof corners);
