@@ -1,5 +1,6 @@
 #include "core/mesh/mesh_check.h"
 
+#include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -44,26 +45,34 @@ TEST(CheckMesh, WeldsSeamsExactly) {
   EXPECT_TRUE(facts.closed());
 }
 
-TEST(CheckMesh, CountsHolesThatTouchInAVertexAsTwo) {
-  SurfaceMesh box = unit_box();
-  box.triangles.erase(box.triangles.begin());
-  EXPECT_EQ(check_mesh(box).holes, 1);
-  // A grid of 4 x 4 squares with two squares missing that share a corner: its rim and two holes.
+/// Squares of a grid of 4 x 4, but for those that `missing` names by 4 y + x.
+SurfaceMesh grid_without(const std::vector<Index>& missing) {
   std::vector<Vec3> points;
   for (int y = 0; y < 5; ++y)
     for (int x = 0; x < 5; ++x) points.emplace_back(x, y, 0);
   std::vector<Triangle> triangles;
-  for (Index y = 0; y < 4; ++y)
-    for (Index x = 0; x < 4; ++x) {
-      if ((x == 1 && y == 1) || (x == 2 && y == 2)) continue;
-      const Index v = 5 * y + x;
-      triangles.push_back({v, v + 1, v + 6});
-      triangles.push_back({v, v + 6, v + 5});
-    }
-  const MeshFacts facts = check_mesh(make_mesh(points, triangles));
-  EXPECT_EQ(facts.holes, 3);
-  EXPECT_EQ(facts.boundary_edges, 16 + 8);
-  EXPECT_TRUE(says(facts, "3 holes (24 boundary edges)"));
+  for (Index square = 0; square < 16; ++square) {
+    if (std::find(missing.begin(), missing.end(), square) != missing.end()) continue;
+    const Index v = 5 * (square / 4) + square % 4;
+    triangles.push_back({v, v + 1, v + 6});
+    triangles.push_back({v, v + 6, v + 5});
+  }
+  return make_mesh(points, triangles);
+}
+
+TEST(CheckMesh, CountsHoles) {
+  SurfaceMesh box = unit_box();
+  box.triangles.erase(box.triangles.begin());
+  EXPECT_EQ(check_mesh(box).holes, 1);
+  EXPECT_EQ(check_mesh(grid_without({})).holes, 1);  // its rim
+  EXPECT_EQ(check_mesh(grid_without({5})).holes, 2);
+  EXPECT_TRUE(says(check_mesh(grid_without({5})), "2 holes (20 boundary edges)"));
+}
+
+TEST(CheckMesh, FollowsHolesRoundFansOfTriangles) {
+  // Squares 0 and 5 touch in one vertex: two sheets, two rims. Squares 5 and 10 missing: one hole with a waist.
+  EXPECT_EQ(check_mesh(grid_without({1, 2, 3, 4, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15})).holes, 2);
+  EXPECT_EQ(check_mesh(grid_without({5, 10})).holes, 2);
 }
 
 TEST(CheckMesh, CountsFlipsDuplicatesCollapsedAndFlatTriangles) {

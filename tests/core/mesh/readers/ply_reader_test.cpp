@@ -132,7 +132,7 @@ TEST(PlyReader, SaysWhereAFileIsWrong) {
   EXPECT_NE(with("3 0 1 2", "3 0 1 5").find("a.ply:23:"), std::string::npos);
   EXPECT_NE(with("3 0 1 2", "3 0 1 -2").find("vertex -2"), std::string::npos);
   EXPECT_NE(with("3 0 1 2", "3 0 1 1.5").find("vertex 1.5"), std::string::npos);
-  EXPECT_NE(with("1 0 0 255", "1 O 0 255").find("a.ply:18: 'O' is not a number"), std::string::npos);
+  EXPECT_NE(with("1 0 0 255", "1 O 0 255").find("a.ply:17: 'O' is not a number"), std::string::npos);
   EXPECT_NE(with("vertex 5", "vertex 2000000000").find("cut off"), std::string::npos);
   EXPECT_NE(with("vertex 5", "vertex -5").find("a.ply:4:"), std::string::npos);
   EXPECT_NE(with("ascii", "gzip").find("'gzip'"), std::string::npos);
