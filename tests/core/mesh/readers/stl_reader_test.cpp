@@ -45,6 +45,16 @@ TEST(StlReader, ReadsBinaryThatCallsItselfSolid) {
   EXPECT_EQ(mesh.positions[8], Vec3(0, 1, static_cast<double>(0.1F)));
 }
 
+TEST(StlReader, WarnsOfBytesBehindTheTriangles) {
+  const testing::TemporaryFolder folder;
+  testing::Warnings warnings;
+  std::string bytes = binary_stl(2, 2) + "more";
+  bytes[0] = 'S';  // not text
+  EXPECT_EQ(import_mesh(folder.write("a.stl", bytes), warnings.log()).triangles.size(), 2U);
+  ASSERT_EQ(warnings.lines.size(), 1U);
+  EXPECT_NE(warnings.lines[0].find("4 bytes"), std::string::npos);
+}
+
 TEST(StlReader, RefusesWhatIsCutOff) {
   EXPECT_FALSE(import_error("a.stl", binary_stl(3, 2)).empty());
   EXPECT_NE(import_error("a.stl", std::string("xyz") + binary_stl(3, 2).substr(3)).find("234"), std::string::npos);
