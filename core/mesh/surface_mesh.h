@@ -18,9 +18,8 @@ struct VertexGroup {
 struct PolygonList {
   std::vector<Index> offsets{0};       ///< polygons + 1
   std::vector<Index> corner_vertices;  ///< index into positions, per corner
-  std::vector<Index>
-      corner_textures;                ///< into texture_coordinates, per corner, -1 for none; empty if the file has none
-  std::vector<Index> polygon_groups;  ///< index into groups, per polygon, -1 for none; empty if the file has none
+  std::vector<Index> corner_textures;  ///< into texture_coordinates, per corner, -1: none; empty if the file has none
+  std::vector<Index> polygon_groups;   ///< index into groups, per polygon, -1 for none; empty if the file has none
 
   std::size_t size() const { return offsets.size() - 1; }
 };
