@@ -49,7 +49,7 @@ void count_triangles(const SurfaceMesh& mesh, const std::vector<Triangle>& welde
 }
 
 /// Number of closed chains of boundary edges. Two boundary edges that meet in a vertex follow each other if a fan of
-/// triangles round that vertex joins them, so that two holes which touch in a vertex stay two.
+/// triangles round that vertex joins them, so that sheets which touch in a vertex have a chain each.
 std::int64_t count_holes(std::span<const HalfEdge> sides, std::size_t triangles) {
   std::vector<std::array<Index, 3>> edges_of(triangles, {-1, -1, -1});
   std::vector<HalfEdge> edges;  // one representative each

@@ -1,6 +1,7 @@
 #include "core/mesh/mesh_repair.h"
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -42,8 +43,8 @@ void remove_not_finite(SurfaceMesh& mesh, std::vector<std::string>& lines) {
     lines.push_back(fmt::format("{} triangle(s) with coordinates that are not finite removed", removed));
 }
 
-void remove_collapsed(SurfaceMesh& mesh, std::vector<std::string>& lines) {
-  const std::vector<Triangle> welded = welded_triangles(mesh);
+void remove_collapsed(SurfaceMesh& mesh, const std::vector<Index>& weld, std::vector<std::string>& lines) {
+  const std::vector<Triangle> welded = welded_triangles(mesh, weld);
   std::vector<char> kept(welded.size());
   for (std::size_t t = 0; t < welded.size(); ++t) kept[t] = is_collapsed(welded[t]) ? 0 : 1;
   if (const std::int64_t removed = keep_triangles(mesh, kept); removed > 0)
@@ -109,22 +110,23 @@ std::vector<char> find_walls(const std::vector<Twins>& twins, const std::vector<
       if (has_opposite(side)) patch_is_wall[static_cast<std::size_t>(patches.root(side.triangle))] = 1;
   });
   for (std::size_t f = 0; f < twins.size(); ++f)
-    is_wall[f] = patch_is_wall[static_cast<std::size_t>(patches.root(static_cast<Index>(f)))];
+    is_wall[f] =
+        twins[f].opposite >= 0 ? patch_is_wall[static_cast<std::size_t>(patches.root(static_cast<Index>(f)))] : 0;
   return is_wall;
 }
 
-void remove_duplicates(SurfaceMesh& mesh, std::vector<std::string>& lines) {
-  const std::vector<Triangle> welded = welded_triangles(mesh);
+void remove_duplicates(SurfaceMesh& mesh, const std::vector<Index>& weld, std::vector<std::string>& lines) {
+  const std::vector<Triangle> welded = welded_triangles(mesh, weld);
   const std::vector<Twins> twins = find_twins(welded);
   if (twins.size() == welded.size()) return;
   const std::vector<char> is_wall = find_walls(twins, welded);
+  const auto walls = std::count(is_wall.begin(), is_wall.end(), 1);
   std::vector<char> kept(welded.size(), 0);
-  for (std::size_t f = 0; f < twins.size(); ++f) {
-    kept[static_cast<std::size_t>(twins[f].first)] = 1;
-    if (is_wall[f] != 0 && twins[f].opposite >= 0) kept[static_cast<std::size_t>(twins[f].opposite)] = 1;
-  }
-  if (const std::int64_t removed = keep_triangles(mesh, kept); removed > 0)
-    lines.push_back(fmt::format("{} duplicate triangle(s) removed", removed));
+  for (std::size_t f = 0; f < twins.size(); ++f)
+    if (is_wall[f] == 0) kept[static_cast<std::size_t>(twins[f].first)] = 1;
+  const std::int64_t removed = keep_triangles(mesh, kept) - 2 * walls;
+  if (walls > 0) lines.push_back(fmt::format("{} triangle(s) of two-sided inner walls removed", 2 * walls));
+  if (removed > 0) lines.push_back(fmt::format("{} duplicate triangle(s) removed", removed));
 }
 
 /// Triangles connected across edges of exactly two triangles, and which of them to flip so that they agree.
@@ -136,15 +138,19 @@ struct Orientation {
 
 Orientation orient(const std::vector<HalfEdge>& sides, std::size_t triangles) {
   struct Link {
-    Index to;
-    bool disagrees;
+    Index to = -1;
+    bool disagrees = false;
   };
-  std::vector<std::vector<Link>> links(triangles);
+  std::vector<std::array<Link, 3>> links(triangles);  // at most one a side
+  const auto add_link = [&](Index from, Index to, bool disagrees) {
+    auto& own = links[static_cast<std::size_t>(from)];
+    *std::find_if(own.begin(), own.end(), [](const Link& link) { return link.to < 0; }) = {to, disagrees};
+  };
   for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
     if (edge.size() != 2) return;
     const bool disagrees = edge[0].forward == edge[1].forward;
-    links[static_cast<std::size_t>(edge[0].triangle)].push_back({edge[1].triangle, disagrees});
-    links[static_cast<std::size_t>(edge[1].triangle)].push_back({edge[0].triangle, disagrees});
+    add_link(edge[0].triangle, edge[1].triangle, disagrees);
+    add_link(edge[1].triangle, edge[0].triangle, disagrees);
   });
   Orientation result{std::vector<Index>(triangles, -1), std::vector<char>(triangles, 0), {}};
   std::vector<std::size_t> front;
@@ -158,6 +164,7 @@ Orientation orient(const std::vector<HalfEdge>& sides, std::size_t triangles) {
       const std::size_t t = front.back();
       front.pop_back();
       for (const Link& link : links[t]) {
+        if (link.to < 0) break;
         const auto to = static_cast<std::size_t>(link.to);
         const char flip = static_cast<char>((result.flip[t] != 0) != link.disagrees);
         if (result.piece[to] < 0) {
@@ -220,8 +227,8 @@ std::vector<char> find_closed(const std::vector<HalfEdge>& sides, const std::vec
   return closed;
 }
 
-void turn_outward(SurfaceMesh& mesh, const std::vector<Index>& piece, std::vector<std::string>& lines) {
-  const std::vector<HalfEdge> sides = sorted_half_edges(welded_triangles(mesh));
+void turn_outward(SurfaceMesh& mesh, const std::vector<HalfEdge>& sides, const std::vector<Index>& piece,
+                  std::vector<std::string>& lines) {
   const std::size_t pieces =
       piece.empty() ? 0 : static_cast<std::size_t>(*std::max_element(piece.begin(), piece.end())) + 1;
   const std::vector<char> closed = find_closed(sides, piece, pieces);
@@ -238,11 +245,13 @@ void turn_outward(SurfaceMesh& mesh, const std::vector<Index>& piece, std::vecto
 
 std::vector<std::string> repair_mesh(SurfaceMesh& mesh) {
   std::vector<std::string> lines;
+  const std::vector<Index> weld = weld_positions(mesh.positions);
   remove_not_finite(mesh, lines);
-  remove_collapsed(mesh, lines);
-  remove_duplicates(mesh, lines);
-  const std::vector<Index> piece = make_consistent(mesh, sorted_half_edges(welded_triangles(mesh)), lines);
-  turn_outward(mesh, piece, lines);
+  remove_collapsed(mesh, weld, lines);
+  remove_duplicates(mesh, weld, lines);
+  const std::vector<HalfEdge> given = sorted_half_edges(welded_triangles(mesh, weld));
+  const std::vector<Index> piece = make_consistent(mesh, given, lines);
+  turn_outward(mesh, sorted_half_edges(welded_triangles(mesh, weld)), piece, lines);
   return lines;
 }
 

@@ -12,9 +12,9 @@ namespace softreel {
 /// order are the file's and stay. Returns one line for each kind of repair that changed something. In this order:
 /// - triangles with vertices that are not finite, or with two corners in one place, are removed. Triangles without area
 ///   but with three distinct corners stay: they close the surface;
-/// - of triangles on the same three places the first one stays. Opposite twins stay both where they are a wall inside
-/// of
-///   a body (their patch ends at edges of three or more faces), since removing one of them would leave a sheet;
+/// - of triangles on the same three places the first one stays; a wall inside of a body whose faces are there once for
+///   each side (a patch of opposite twins that ends at edges of three faces, as between two boxes that share a side) is
+///   removed with both, which changes neither inside nor outside and closes the rest;
 /// - neighbours across edges of two triangles are made to agree, the minority of a piece giving way to the majority (by
 ///   area); one-sided pieces (Moebius strips) stay;
 /// - closed pieces are turned outward. A piece inside of another stays a cavity if it was oriented against its

@@ -7,7 +7,10 @@
 namespace softreel {
 
 std::vector<Triangle> welded_triangles(const SurfaceMesh& mesh) {
-  const std::vector<Index> weld = weld_positions(mesh.positions);
+  return welded_triangles(mesh, weld_positions(mesh.positions));
+}
+
+std::vector<Triangle> welded_triangles(const SurfaceMesh& mesh, const std::vector<Index>& weld) {
   std::vector<Triangle> welded = mesh.triangles;
   for (Triangle& triangle : welded)
     for (Index& v : triangle) v = weld[static_cast<std::size_t>(v)];

@@ -19,6 +19,8 @@ struct HalfEdge {
 
 /// The triangles with each vertex replaced by the first one of its position. Vertices that are not finite stay apart.
 std::vector<Triangle> welded_triangles(const SurfaceMesh& mesh);
+/// The same with the result of weld_positions at hand.
+std::vector<Triangle> welded_triangles(const SurfaceMesh& mesh, const std::vector<Index>& weld);
 
 /// True if two corners are the same vertex, so that the triangle is a line or a point.
 bool is_collapsed(const Triangle& welded);

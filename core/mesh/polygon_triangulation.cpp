@@ -1,5 +1,8 @@
 #include "core/mesh/polygon_triangulation.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/base/check.h"
 
 namespace softreel {
@@ -104,6 +107,19 @@ class EarClipper {
   std::vector<char> reflex_;
 };
 
+/// Adds one triangle of polygon p, given by its corners within the polygon.
+void append_triangle(SurfaceMesh& mesh, std::size_t p, const Triangle& local) {
+  const auto pick = [&](const std::vector<Index>& of_corner) {
+    Triangle picked;
+    for (std::size_t k = 0; k < 3; ++k)
+      picked[k] = of_corner[static_cast<std::size_t>(mesh.polygons.offsets[p] + local[k])];
+    return picked;
+  };
+  mesh.triangles.push_back(pick(mesh.polygons.corner_vertices));
+  mesh.triangle_polygon.push_back(static_cast<Index>(p));
+  if (!mesh.polygons.corner_textures.empty()) mesh.triangle_textures.push_back(pick(mesh.polygons.corner_textures));
+}
+
 }  // namespace
 
 std::vector<Triangle> triangulate_polygon(std::span<const Vec3> corners) {
@@ -122,34 +138,24 @@ std::vector<Triangle> triangulate_polygon(std::span<const Vec3> corners) {
 
 std::int64_t triangulate_polygons(SurfaceMesh& mesh) {
   const PolygonList& polygons = mesh.polygons;
-  const bool has_textures = !polygons.corner_textures.empty();
   mesh.triangles.clear();
   mesh.triangle_polygon.clear();
   mesh.triangle_textures.clear();
+  mesh.triangles.reserve(polygons.size());
+  mesh.triangle_polygon.reserve(polygons.size());
   std::int64_t dropped = 0;
   std::vector<Vec3> corners;
   for (std::size_t p = 0; p < polygons.size(); ++p) {
-    const auto begin = static_cast<std::size_t>(polygons.offsets[p]);
-    const auto end = static_cast<std::size_t>(polygons.offsets[p + 1]);
     corners.clear();
-    bool finite = true;
-    for (std::size_t c = begin; c < end; ++c) {
-      corners.push_back(mesh.positions[static_cast<std::size_t>(polygons.corner_vertices[c])]);
-      finite = finite && corners.back().allFinite();
-    }
-    if (!finite) {
+    for (Index c = polygons.offsets[p]; c < polygons.offsets[p + 1]; ++c)
+      corners.push_back(
+          mesh.positions[static_cast<std::size_t>(polygons.corner_vertices[static_cast<std::size_t>(c)])]);
+    if (!std::all_of(corners.begin(), corners.end(), [](const Vec3& q) { return q.allFinite(); })) {
       ++dropped;
-      continue;
-    }
-    const auto pick = [&](const std::vector<Index>& of_corner, const Triangle& local) {
-      Triangle picked;
-      for (std::size_t k = 0; k < 3; ++k) picked[k] = of_corner[begin + static_cast<std::size_t>(local[k])];
-      return picked;
-    };
-    for (const Triangle& local : triangulate_polygon(corners)) {
-      mesh.triangles.push_back(pick(polygons.corner_vertices, local));
-      mesh.triangle_polygon.push_back(static_cast<Index>(p));
-      if (has_textures) mesh.triangle_textures.push_back(pick(polygons.corner_textures, local));
+    } else if (corners.size() == 3) {
+      append_triangle(mesh, p, {0, 1, 2});
+    } else {
+      for (const Triangle& local : triangulate_polygon(corners)) append_triangle(mesh, p, local);
     }
   }
   return dropped;

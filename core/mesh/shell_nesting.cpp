@@ -68,17 +68,17 @@ bool is_inside(const SurfaceMesh& mesh, const Shell& shell, const Vec3& from) {
   return inside;
 }
 
-/// A shell is inside of another if most of a few points spread over it are.
+/// A shell is inside of another if most of three points spread over it are.
 bool contains_shell(const SurfaceMesh& mesh, const Shell& outer, const Shell& inner) {
   if (!box_contains(outer.bounds, inner.bounds)) return false;
-  int inside = 0;
-  const std::size_t n = inner.triangles.size();
-  for (const std::size_t t : {std::size_t{0}, n / 2, n - 1}) {
+  const auto is_triangle_inside = [&](std::size_t t) {
     Vec3 centroid = Vec3::Zero();
     for (const Index v : inner.triangles[t]) centroid += mesh.positions[static_cast<std::size_t>(v)] / 3;
-    inside += is_inside(mesh, outer, centroid) ? 1 : 0;
-  }
-  return inside >= 2;
+    return is_inside(mesh, outer, centroid);
+  };
+  const std::size_t count = inner.triangles.size();
+  const bool first = is_triangle_inside(0), middle = is_triangle_inside(count / 2);
+  return first == middle ? first : is_triangle_inside(count - 1);
 }
 
 }  // namespace

@@ -19,8 +19,11 @@ std::vector<Index> weld_positions(const std::vector<Vec3>& positions) {
   const auto at = [&](Index v) -> const Vec3& { return positions[static_cast<std::size_t>(v)]; };
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
     const Vec3 &p = at(a), &q = at(b);
-    for (int k = 0; k < 3; ++k)
-      if (p[k] != q[k]) return p[k] < q[k];
+    for (int k = 0; k < 3; ++k) {
+      if (p[k] < q[k]) return true;
+      if (p[k] > q[k]) return false;
+      if (std::isnan(p[k]) != std::isnan(q[k])) return std::isnan(q[k]);  // an order needs a place for NaN: last
+    }
     return a < b;
   });
   std::vector<Index> first(positions.size());

@@ -18,7 +18,7 @@ struct VertexGroup {
 struct PolygonList {
   std::vector<Index> offsets{0};       ///< polygons + 1
   std::vector<Index> corner_vertices;  ///< index into positions, per corner
-  std::vector<Index> corner_textures;  ///< index into texture_coordinates, per corner; empty if the file has none
+  std::vector<Index> corner_textures;  ///< into texture_coordinates, per corner, -1: none; empty if the file has none
   std::vector<Index> polygon_groups;   ///< index into groups, per polygon, -1 for none; empty if the file has none
 
   std::size_t size() const { return offsets.size() - 1; }
@@ -36,7 +36,7 @@ struct SurfaceMesh {
 
   std::vector<Triangle> triangles;          ///< polygons cut into triangles
   std::vector<Index> triangle_polygon;      ///< polygon of each triangle
-  std::vector<Triangle> triangle_textures;  ///< texture coordinate per triangle corner; empty if the file has none
+  std::vector<Triangle> triangle_textures;  ///< per triangle corner, -1 for none; empty if the file has none
 };
 
 /// Axis-aligned box; of no points: min > max.

@@ -14,7 +14,7 @@ class OffReader {
   OffReader(const MeshSource& source, const Log& log) : source_(source), log_(log), lines_(source.bytes) {}
 
   SurfaceMesh read() {
-    std::string_view line = next_line("its header");
+    std::string_view line = next_line("header");
     std::string_view rest = line;
     std::string_view keyword = take_word(rest);
     if (keyword.ends_with("OFF")) {
@@ -26,27 +26,26 @@ class OffReader {
       if (trimmed(rest).starts_with("BINARY"))
         throw broken_file(source_, place(), "the file is a binary OFF file", "the text form",
                           "Export it as text or PLY");
-      line = trimmed(rest).empty() ? next_line("its counts") : rest;
+      line = trimmed(rest).empty() ? next_line("line of counts") : rest;
     }
     const std::size_t vertices = read_count(line, "vertices");
     const std::size_t faces = read_count(line, "faces");
-    for (std::size_t v = 0; v < vertices; ++v) read_vertex(next_line(fmt::format("vertex {} of {}", v + 1, vertices)));
-    for (std::size_t f = 0; f < faces; ++f) read_face(next_line(fmt::format("face {} of {}", f + 1, faces)));
+    for (std::size_t v = 0; v < vertices; ++v) read_vertex(next_line("vertex", v + 1, vertices));
+    for (std::size_t f = 0; f < faces; ++f) read_face(next_line("face", f + 1, faces));
     if (has_textures_) mesh_.polygons.corner_textures = mesh_.polygons.corner_vertices;
     skipped_.report(source_, log_);
     return std::move(mesh_);
   }
 
  private:
-  /// The next line that says something, without its comment.
-  template <typename What>
-  std::string_view next_line(const What& what) {
+  /// The next line that says something, without its comment. what, number, count: what it should hold, for the error.
+  std::string_view next_line(const char* what, std::size_t number = 1, std::size_t count = 1) {
     std::string_view line;
     while (lines_.next(line)) {
       line = line.substr(0, line.find('#'));
       if (!trimmed(line).empty()) return line;
     }
-    throw broken_file(source_, place(), fmt::format("the file ends before {}", what),
+    throw broken_file(source_, place(), fmt::format("the file ends before {} {} of {}", what, number, count),
                       "as many lines as its header announces", "Export the mesh again; the file may be cut off");
   }
 

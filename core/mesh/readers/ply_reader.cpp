@@ -1,5 +1,6 @@
 #include "core/mesh/readers/ply_reader.h"
 
+#include <algorithm>
 #include <map>
 
 #include "core/mesh/readers/ply_values.h"
@@ -100,29 +101,36 @@ class PlyBody {
 
   void read_faces(const PlyElement& element) {
     check_count(element);
-    for (std::int64_t row = 0; row < element.count; ++row) {
-      double group = -1;
-      textures_.clear();
-      bool is_face = false;
-      for (const PlyProperty& property : element.properties) {
-        const Role role = role_of_face_property(property);
-        if (role == Role::Corners) {
-          read_list(property, list_);
-          for (const double corner : list_) mesh_.polygons.corner_vertices.push_back(vertex_index(corner));
-          is_face = true;
-        } else if (property.is_list) {
-          read_list(property, role == Role::CornerTextures ? textures_ : list_);
-        } else {
-          const double value = values_.next(property.type);
-          if (role == Role::Group) group = value;
-        }
-      }
-      if (!is_face) continue;
+    std::vector<Role> roles;
+    for (const PlyProperty& property : element.properties) roles.push_back(role_of_face_property(property));
+    const bool has_corners = std::find(roles.begin(), roles.end(), Role::Corners) != roles.end();
+    for (std::int64_t row = 0; row < element.count && !roles.empty(); ++row) {
+      const double group = read_face(element, roles);
+      if (!has_corners) continue;
       if (close_polygon(mesh_.polygons))
         finish_face(group);
       else
         skipped_.add(values_.place());
     }
+  }
+
+  /// Appends the corners of a face, keeps its texture coordinates aside, and returns its group, or -1.
+  double read_face(const PlyElement& element, const std::vector<Role>& roles) {
+    double group = -1;
+    textures_.clear();
+    for (std::size_t p = 0; p < roles.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      if (property.is_list) {
+        std::vector<double>& list = roles[p] == Role::CornerTextures ? textures_ : list_;
+        read_list(property, list);
+        if (roles[p] == Role::Corners)
+          for (const double corner : list) mesh_.polygons.corner_vertices.push_back(vertex_index(corner));
+      } else {
+        const double value = values_.next(property.type);
+        if (roles[p] == Role::Group) group = value;
+      }
+    }
+    return group;
   }
 
   /// Keeps what the face says beside its corners.
@@ -139,6 +147,7 @@ class PlyBody {
   }
 
   void read_strips(const PlyElement& element) {
+    if (element.properties.empty()) return;
     for (std::int64_t row = 0; row < element.count; ++row)
       for (const PlyProperty& property : element.properties) {
         if (!property.is_list) {

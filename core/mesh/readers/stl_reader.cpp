@@ -27,8 +27,13 @@ void close_facet(SurfaceMesh& mesh) {
   mesh.polygons.offsets.push_back(end);
 }
 
+/// bytes: exactly the header and its facets.
 SurfaceMesh read_binary(std::string_view bytes) {
   SurfaceMesh mesh;
+  const std::size_t facets = (bytes.size() - kHeaderBytes) / kFacetBytes;
+  mesh.positions.reserve(3 * facets);
+  mesh.polygons.offsets.reserve(facets + 1);
+  mesh.polygons.corner_vertices.reserve(3 * facets);
   for (std::size_t at = kHeaderBytes; at + kFacetBytes <= bytes.size(); at += kFacetBytes) {
     std::array<float, 9> corners;
     std::memcpy(corners.data(), bytes.data() + at + kNormalBytes, sizeof corners);
@@ -123,14 +128,19 @@ class StlTextReader {
 
 }  // namespace
 
-SurfaceMesh read_stl(const MeshSource& source, const Log&) {
-  const bool has_header = source.bytes.size() >= kHeaderBytes;
-  if (has_header && announced_bytes(source.bytes) == source.bytes.size()) return read_binary(source.bytes);
-  std::string_view text = source.bytes;
+SurfaceMesh read_stl(const MeshSource& source, const Log& log) {
+  const std::string_view bytes = source.bytes;
+  const std::uint64_t announced = bytes.size() < kHeaderBytes ? 0 : announced_bytes(bytes);
+  if (announced == bytes.size()) return read_binary(bytes);
+  std::string_view text = bytes;
   if (take_word(text) == "solid") return StlTextReader(source).read();
-  const std::string announced = has_header ? fmt::format("{}", announced_bytes(source.bytes)) : "at least 84";
-  throw broken_file(source, "", fmt::format("{} bytes are no STL file", source.bytes.size()),
-                    fmt::format("text that starts with 'solid', or a binary file of {} bytes by its header", announced),
+  if (announced > kHeaderBytes && announced < bytes.size()) {
+    log.warn(fmt::format("{}: {} bytes after the last triangle left out", source.name, bytes.size() - announced));
+    return read_binary(bytes.substr(0, announced));
+  }
+  throw broken_file(source, "", fmt::format("{} bytes are no STL file", bytes.size()),
+                    fmt::format("text that starts with 'solid', or a binary file of {} bytes by its header",
+                                announced == 0 ? "at least 84" : std::to_string(announced)),
                     "Export the mesh again; the file may be cut off");
 }
 

@@ -5,8 +5,9 @@
 
 namespace softreel::detail {
 
-/// A file is binary if its size is what its count of triangles asks for (84 + 50 n bytes), else text. Normals and
-/// attribute bytes are passed over; a named solid of a text file becomes a group. Throws input_error.
+/// A file is binary if its size is what its count of triangles asks for (84 + 50 n bytes), else text if it starts with
+/// "solid", else binary with further bytes behind it (a warning). Normals and attribute bytes are passed over; a named
+/// solid of a text file becomes a group. Throws input_error.
 SurfaceMesh read_stl(const MeshSource& source, const Log& log);
 
 }  // namespace softreel::detail

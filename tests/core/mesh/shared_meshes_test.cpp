@@ -1,4 +1,7 @@
-// The real test surfaces, with the facts that an independent program found.
+// The real test surfaces, with the facts that an independent program found. It counted suzanne.obj after it had removed
+// one of two opposite triangles in a fold of the nose: 44 boundary edges, Euler characteristic 0.
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "core/mesh/mesh_check.h"
@@ -21,19 +24,31 @@ TEST_P(SharedMeshes, HaveTheKnownFacts) {
   if (path.empty()) GTEST_SKIP() << "shared/meshes/" << known.file << " is not beside the project";
   SurfaceMesh mesh = import_mesh(path, Log{});
   const MeshFacts facts = check_mesh(mesh);
+  EXPECT_EQ(facts.vertices, known.vertices);
   EXPECT_EQ(facts.triangles, known.triangles);
   EXPECT_EQ(facts.boundary_edges, known.boundary_edges);
   EXPECT_EQ(facts.non_manifold_edges, known.non_manifold_edges);
   EXPECT_EQ(facts.pieces, known.pieces);
-  EXPECT_EQ(facts.distinct_vertices - facts.edges + facts.triangles - facts.collapsed_triangles, known.euler);
-  const std::vector<std::string> lines = repair_mesh(mesh);
+  EXPECT_EQ(facts.distinct_vertices - facts.edges + facts.triangles, known.euler);
+  const std::vector<std::string> repairs = repair_mesh(mesh);
   const MeshFacts repaired = check_mesh(mesh);
+  EXPECT_EQ(repaired.boundary_edges, known.boundary_edges);
+  EXPECT_EQ(repaired.non_manifold_edges, 0);
   EXPECT_EQ(repaired.flipped_neighbours, 0);
-  if (facts.closed()) {
-    EXPECT_GT(repaired.signed_volume, 0);
-    EXPECT_EQ(repaired.triangles, facts.triangles);
-    EXPECT_EQ(lines.empty(), facts.signed_volume > 0) << lines.size();
-  }
+  if (known.boundary_edges > 0) return;
+  EXPECT_GT(repaired.signed_volume, 0);
+  EXPECT_NEAR(repaired.signed_volume, std::abs(facts.signed_volume), 1e-12 * repaired.signed_volume);
+  EXPECT_EQ(repaired.triangles, facts.triangles);
+  EXPECT_EQ(repairs.empty(), facts.signed_volume > 0);
+}
+
+TEST(SharedHorse, IsTurnedOutwardAndBunnyScanHasFiveHoles) {
+  const std::string horse = testing::shared_mesh("horse.off"), bunny = testing::shared_mesh("bunny_open.obj");
+  if (horse.empty() || bunny.empty()) GTEST_SKIP() << "shared/meshes is not beside the project";
+  SurfaceMesh mesh = import_mesh(horse, Log{});
+  EXPECT_LT(check_mesh(mesh).signed_volume, 0);
+  EXPECT_EQ(repair_mesh(mesh), std::vector<std::string>{"all faces pointed inward: turned outward"});
+  EXPECT_EQ(check_mesh(import_mesh(bunny, Log{})).holes, 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SharedMeshes,
@@ -45,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(All, SharedMeshes,
                                            SharedMesh{"fandisk.obj", 6475, 12946, 0, 0, 1, 2},
                                            SharedMesh{"horse.off", 48485, 96966, 0, 0, 1, 2},
                                            SharedMesh{"spot.obj", 2930, 5856, 0, 0, 1, 2},
-                                           SharedMesh{"suzanne.obj", 507, 968, 44, 1, 1, 0},
+                                           SharedMesh{"suzanne.obj", 507, 968, 42, 1, 1, 1},
                                            SharedMesh{"teapot.obj", 3644, 6320, 160, 0, 3, 1}),
                          [](const auto& param_info) {
                            std::string name = param_info.param.file;

@@ -1,0 +1,138 @@
+#include "core/mesh/mesh_repair.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "core/mesh/mesh_check.h"
+#include "tests/core/mesh/mesh_files.h"
+
+namespace softreel {
+namespace {
+
+using testing::add_box;
+using testing::make_mesh;
+using testing::unit_box;
+
+double volume(const SurfaceMesh& mesh) {
+  return check_mesh(mesh).signed_volume;
+}
+
+TEST(RepairMesh, LeavesAGoodMeshAsItIs) {
+  SurfaceMesh box = unit_box();
+  const std::vector<Triangle> triangles = box.triangles;
+  EXPECT_TRUE(repair_mesh(box).empty());
+  EXPECT_EQ(box.triangles, triangles);
+}
+
+TEST(RepairMesh, RemovesJunkAndKeepsVerticesAndPolygons) {
+  SurfaceMesh mesh = unit_box();
+  const std::size_t polygons = mesh.polygons.size();
+  mesh.positions.emplace_back(std::numeric_limits<double>::infinity(), 0, 0);
+  for (const Triangle& junk : {Triangle{0, 1, 8}, Triangle{3, 3, 1}, mesh.triangles[4]}) {
+    mesh.triangles.push_back(junk);
+    mesh.triangle_polygon.push_back(0);
+  }
+  const std::vector<std::string> lines = repair_mesh(mesh);
+  EXPECT_EQ(lines, std::vector<std::string>({"1 triangle(s) with coordinates that are not finite removed",
+                                             "1 triangle(s) with two corners in one place removed",
+                                             "1 duplicate triangle(s) removed"}));
+  EXPECT_EQ(mesh.triangles, unit_box().triangles);
+  EXPECT_EQ(mesh.triangle_polygon.size(), mesh.triangles.size());
+  EXPECT_EQ(mesh.positions.size(), 9U);
+  EXPECT_EQ(mesh.polygons.size(), polygons);
+}
+
+TEST(RepairMesh, TurnsAnySetOfFlippedTrianglesBackWithTheirTextures) {
+  for (unsigned flipped = 0; flipped < 4096; flipped += 7) {
+    SurfaceMesh mesh = unit_box();
+    mesh.triangle_textures = mesh.triangles;
+    for (std::size_t t = 0; t < 12; ++t)
+      if ((flipped >> t & 1U) != 0) {
+        std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+        std::swap(mesh.triangle_textures[t][1], mesh.triangle_textures[t][2]);
+      }
+    repair_mesh(mesh);
+    EXPECT_EQ(mesh.triangles, unit_box().triangles) << flipped;
+    EXPECT_EQ(mesh.triangle_textures, mesh.triangles) << flipped;
+  }
+}
+
+TEST(RepairMesh, TurnsSeparatePiecesOutward) {
+  SurfaceMesh mesh;
+  add_box(mesh, Vec3::Zero(), Vec3::Ones(), true);
+  add_box(mesh, Vec3(2, 0, 0), Vec3(3, 1, 1), false);
+  EXPECT_EQ(repair_mesh(mesh), std::vector<std::string>({"1 of 2 pieces turned outward"}));
+  EXPECT_NEAR(volume(mesh), 2, 1e-14);
+}
+
+TEST(RepairMesh, KeepsACavityACavityAndASolidInASolidSolid) {
+  for (const bool outer_inward : {false, true})
+    for (const bool inner_inward : {false, true}) {
+      SurfaceMesh mesh;
+      add_box(mesh, Vec3::Constant(1), Vec3::Constant(2), inner_inward);  // the inner one first
+      add_box(mesh, Vec3::Zero(), Vec3::Constant(3), outer_inward);
+      repair_mesh(mesh);
+      EXPECT_NEAR(volume(mesh), inner_inward == outer_inward ? 28 : 26, 1e-12);
+    }
+}
+
+TEST(RepairMesh, KeepsASolidInsideACavity) {
+  for (const bool inverted : {false, true}) {
+    SurfaceMesh mesh;
+    add_box(mesh, Vec3::Zero(), Vec3::Constant(5), inverted);
+    add_box(mesh, Vec3::Constant(1), Vec3::Constant(4), !inverted);
+    add_box(mesh, Vec3::Constant(2), Vec3::Constant(3), inverted);
+    EXPECT_EQ(repair_mesh(mesh).empty(), !inverted);
+    EXPECT_NEAR(volume(mesh), 125 - 27 + 1, 1e-12);
+  }
+}
+
+TEST(RepairMesh, RemovesTheWallBetweenTwoBoxesWithBothSides) {
+  SurfaceMesh mesh;
+  add_box(mesh, Vec3::Zero(), Vec3::Ones());
+  add_box(mesh, Vec3(1, 0, 0), Vec3(2, 1, 1));
+  ASSERT_EQ(check_mesh(mesh).duplicate_triangles, 2);  // both sides are cut along the same diagonal
+  EXPECT_EQ(repair_mesh(mesh), std::vector<std::string>({"4 triangle(s) of two-sided inner walls removed"}));
+  EXPECT_TRUE(check_mesh(mesh).closed());
+  EXPECT_NEAR(volume(mesh), 2, 1e-14);
+}
+
+TEST(RepairMesh, KeepsOneOfABodyThatIsThereTwiceWithOppositeFaces) {
+  SurfaceMesh mesh = unit_box();
+  for (Triangle t : unit_box().triangles) {
+    std::swap(t[0], t[1]);
+    mesh.triangles.push_back(t);
+    mesh.triangle_polygon.push_back(0);
+  }
+  EXPECT_EQ(repair_mesh(mesh), std::vector<std::string>({"12 duplicate triangle(s) removed"}));
+  EXPECT_TRUE(check_mesh(mesh).closed());
+  EXPECT_NEAR(volume(mesh), 1, 1e-15);
+}
+
+TEST(RepairMesh, SaysThatAMoebiusStripHasOneSide) {
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;
+  constexpr Index kSteps = 12;
+  for (Index i = 0; i < kSteps; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kSteps, twist = angle / 2;
+    for (const double side : {-0.3, 0.3}) {
+      const double r = 1 + side * std::cos(twist);
+      points.emplace_back(r * std::cos(angle), r * std::sin(angle), side * std::sin(twist));
+    }
+    const Index a = 2 * i, b = a + 1;
+    const Index c = i + 1 < kSteps ? a + 2 : 1, d = i + 1 < kSteps ? a + 3 : 0;
+    triangles.push_back({a, b, d});
+    triangles.push_back({a, d, c});
+  }
+  SurfaceMesh mesh = make_mesh(points, triangles);
+  const std::vector<Triangle> before = mesh.triangles;
+  EXPECT_EQ(repair_mesh(mesh),
+            std::vector<std::string>({"1 one-sided piece(s) cannot be oriented and stay as they are"}));
+  EXPECT_EQ(mesh.triangles, before);
+}
+
+}  // namespace
+}  // namespace softreel

@@ -1,0 +1,132 @@
+// OBJ and PLY, read back by our own readers: every bit of every position must return.
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/core/mesh/mesh_files.h"
+#include "tool/export/obj_export.h"
+#include "tool/export/ply_export.h"
+
+namespace softreel {
+namespace {
+
+/// Positions with awkward bits: all exponents, subnormals, negative zero.
+std::vector<Vec3> awkward_positions(std::size_t count) {
+  std::mt19937_64 random(11);
+  std::vector<Vec3> positions(count);
+  for (Vec3& p : positions)
+    for (int k = 0; k < 3; ++k) {
+      p[k] = std::bit_cast<double>(random());
+      if (!std::isfinite(p[k])) p[k] = -0.0;
+    }
+  positions[0] = Vec3(std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max(), -0.0);
+  return positions;
+}
+
+void expect_same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t v = 0; v < a.size(); ++v)
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(std::bit_cast<std::uint64_t>(a[v][k]), std::bit_cast<std::uint64_t>(b[v][k]));
+}
+
+SurfaceMesh read_back(const std::string& name, const std::vector<std::uint8_t>& bytes) {
+  return testing::import_text(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// Texture coordinate of each corner; (-1, -1) for none.
+std::vector<Vec2> corner_textures(const SurfaceMesh& mesh) {
+  std::vector<Vec2> values;
+  for (const Index t : mesh.polygons.corner_textures)
+    values.push_back(t < 0 ? Vec2(-1, -1) : mesh.texture_coordinates[static_cast<std::size_t>(t)]);
+  return values;
+}
+
+std::map<std::string, std::vector<Index>> groups_of(const SurfaceMesh& mesh) {
+  std::map<std::string, std::vector<Index>> groups;
+  for (const VertexGroup& group : mesh.groups) groups[group.name] = group.vertices;
+  return groups;
+}
+
+/// Quads, a pentagon and a triangle in two groups, a texture seam, an unused vertex.
+SurfaceMesh patchwork() {
+  return testing::import_text(
+      "a.obj",
+      "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 9 9 9\nv 1 2 0\nv 0 2 0.1\n"
+      "vt 0 0\nvt 0.1 0\nvt 0.1 1\nvt 0 1\nvt 0.7 0.3\n"
+      "g left\nf 1/1 2/2 5/3 4/4\ng right\nf 2/5 3/2 6/3 5/1\ng\nf 4/1 5/2 6/3 8/4 9/5\nf 4/1 2/3 1/2\n");
+}
+
+TEST(ObjExport, ReadsBackBitForBitWithPolygonsTexturesAndGroups) {
+  const SurfaceMesh mesh = patchwork();
+  const std::vector<Vec3> positions = awkward_positions(mesh.positions.size());
+  const SurfaceMesh back = read_back("b.obj", encode_obj(mesh, positions));
+  expect_same_bits(back.positions, positions);
+  EXPECT_EQ(back.polygons.offsets, mesh.polygons.offsets);
+  EXPECT_EQ(back.polygons.corner_vertices, mesh.polygons.corner_vertices);
+  EXPECT_EQ(back.polygons.corner_textures, mesh.polygons.corner_textures);
+  EXPECT_EQ(back.texture_coordinates, mesh.texture_coordinates);
+  EXPECT_EQ(groups_of(back), groups_of(mesh));
+  EXPECT_EQ(back.polygons.polygon_groups, mesh.polygons.polygon_groups);
+}
+
+TEST(ObjExport, OfItsOwnResultHasTheSameBytes) {
+  const SurfaceMesh mesh = patchwork();
+  const std::vector<std::uint8_t> bytes = encode_obj(mesh, mesh.positions);
+  const SurfaceMesh back = read_back("b.obj", bytes);
+  EXPECT_EQ(encode_obj(back, back.positions), bytes);
+}
+
+TEST(PlyExport, ReadsBackBitForBitWithTexturesPerCorner) {
+  const SurfaceMesh mesh = patchwork();
+  const std::vector<Vec3> positions = awkward_positions(mesh.positions.size());
+  const SurfaceMesh back = read_back("b.ply", encode_ply(mesh, positions));
+  expect_same_bits(back.positions, positions);
+  EXPECT_EQ(back.polygons.offsets, mesh.polygons.offsets);
+  EXPECT_EQ(back.polygons.corner_vertices, mesh.polygons.corner_vertices);
+  EXPECT_EQ(corner_textures(back), corner_textures(mesh));
+  EXPECT_EQ(groups_of(back), groups_of(mesh));
+}
+
+TEST(PlyExport, KeepsTexturesPerVertexAndNamesWithBlanks) {
+  SurfaceMesh mesh = testing::unit_box();
+  for (Index v = 0; v < 8; ++v) mesh.texture_coordinates.emplace_back(0.1 * v, 1.0 / (v + 3));
+  mesh.polygons.corner_textures = mesh.polygons.corner_vertices;
+  mesh.groups = {{"left hand", {0, 5}}, {"100%", {}}};
+  const std::vector<std::uint8_t> bytes = encode_ply(mesh, mesh.positions);
+  EXPECT_NE(std::string(bytes.begin(), bytes.end()).find("property double s\n"), std::string::npos);
+  const SurfaceMesh back = read_back("b.ply", bytes);
+  EXPECT_EQ(back.texture_coordinates, mesh.texture_coordinates);
+  EXPECT_EQ(back.polygons.corner_textures, mesh.polygons.corner_textures);
+  EXPECT_EQ(groups_of(back), groups_of(mesh));
+}
+
+TEST(PlyExport, HoldsPolygonsOfMoreThan255Corners) {
+  SurfaceMesh mesh;
+  for (int i = 0; i < 300; ++i) {
+    mesh.positions.emplace_back(std::cos(0.02 * i), std::sin(0.02 * i), 0);
+    mesh.polygons.corner_vertices.push_back(i);
+  }
+  mesh.polygons.offsets.push_back(300);
+  const SurfaceMesh back = read_back("b.ply", encode_ply(mesh, mesh.positions));
+  EXPECT_EQ(back.polygons.corner_vertices, mesh.polygons.corner_vertices);
+  EXPECT_EQ(back.triangles.size(), 298U);
+}
+
+TEST(MeshExport, OfARealMeshHasTheNumbersOfItsFile) {
+  const std::string path = testing::shared_mesh("spot.obj");
+  if (path.empty()) GTEST_SKIP() << "shared/meshes/spot.obj is not beside the project";
+  const SurfaceMesh mesh = import_mesh(path, Log{});
+  for (const SurfaceMesh& back :
+       {read_back("b.obj", encode_obj(mesh, mesh.positions)), read_back("b.ply", encode_ply(mesh, mesh.positions))}) {
+    expect_same_bits(back.positions, mesh.positions);
+    EXPECT_EQ(back.polygons.corner_vertices, mesh.polygons.corner_vertices);
+    EXPECT_EQ(corner_textures(back), corner_textures(mesh));
+  }
+}
+
+}  // namespace
+}  // namespace softreel
