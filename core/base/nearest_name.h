@@ -1,4 +1,4 @@
-/// Which known name a misspelt one was meant to be.
+/// What the user may have meant: the known name nearest to an unknown one.
 #pragma once
 
 #include <string>
@@ -6,8 +6,9 @@
 
 namespace softreel {
 
-/// The known name with the fewest letters to change (Levenshtein distance, letter case ignored; the first of equals);
-/// empty if none is near: more than a third of its letters, but at least two, would change.
+/// The known name with the fewest edits (insert, delete, replace a letter, swap two neighbours; upper and lower case
+/// are the same) from `unknown`, the first of several; empty if none is within a third of its length, at least one
+/// edit.
 std::string nearest_name(const std::string& unknown, const std::vector<std::string>& known);
 
 }  // namespace softreel

@@ -1,0 +1,249 @@
+#include "core/mesh/mesh_repair.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "core/mesh/mesh_topology.h"
+#include "core/mesh/shell_nesting.h"
+
+namespace softreel {
+namespace {
+
+/// Keeps the triangles marked 1; returns how many were removed.
+std::int64_t keep_triangles(SurfaceMesh& mesh, const std::vector<char>& kept) {
+  std::size_t end = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (kept[t] == 0) continue;
+    mesh.triangles[end] = mesh.triangles[t];
+    if (!mesh.triangle_polygon.empty()) mesh.triangle_polygon[end] = mesh.triangle_polygon[t];
+    if (!mesh.triangle_textures.empty()) mesh.triangle_textures[end] = mesh.triangle_textures[t];
+    ++end;
+  }
+  const auto removed = static_cast<std::int64_t>(mesh.triangles.size() - end);
+  mesh.triangles.resize(end);
+  if (!mesh.triangle_polygon.empty()) mesh.triangle_polygon.resize(end);
+  if (!mesh.triangle_textures.empty()) mesh.triangle_textures.resize(end);
+  return removed;
+}
+
+void flip_triangle(SurfaceMesh& mesh, std::size_t t) {
+  std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  if (!mesh.triangle_textures.empty()) std::swap(mesh.triangle_textures[t][1], mesh.triangle_textures[t][2]);
+}
+
+void remove_not_finite(SurfaceMesh& mesh, std::vector<std::string>& lines) {
+  std::vector<char> kept(mesh.triangles.size(), 1);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const Index v : mesh.triangles[t])
+      if (!mesh.positions[static_cast<std::size_t>(v)].allFinite()) kept[t] = 0;
+  if (const std::int64_t removed = keep_triangles(mesh, kept); removed > 0)
+    lines.push_back(fmt::format("{} triangle(s) with coordinates that are not finite removed", removed));
+}
+
+void remove_collapsed(SurfaceMesh& mesh, std::vector<std::string>& lines) {
+  const std::vector<Triangle> welded = welded_triangles(mesh);
+  std::vector<char> kept(welded.size());
+  for (std::size_t t = 0; t < welded.size(); ++t) kept[t] = is_collapsed(welded[t]) ? 0 : 1;
+  if (const std::int64_t removed = keep_triangles(mesh, kept); removed > 0)
+    lines.push_back(fmt::format("{} triangle(s) with two corners in one place removed", removed));
+}
+
+/// Corners rotated so that the smallest comes first: equal for equal triangles of one orientation.
+Triangle rotated_to_smallest(const Triangle& t) {
+  const auto k = static_cast<std::size_t>(std::min_element(t.begin(), t.end()) - t.begin());
+  return {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
+}
+
+/// Triangles on the same three places: the first of them, and the first of the other orientation (-1 if there is none).
+struct Twins {
+  Index first, opposite = -1;
+};
+
+/// Groups of triangles with equal corners, by their first triangle.
+std::vector<Twins> find_twins(const std::vector<Triangle>& welded) {
+  struct Entry {
+    Triangle sorted;
+    Index triangle;
+  };
+  std::vector<Entry> entries;
+  for (std::size_t t = 0; t < welded.size(); ++t) {
+    entries.push_back({welded[t], static_cast<Index>(t)});
+    std::sort(entries.back().sorted.begin(), entries.back().sorted.end());
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.sorted, a.triangle) < std::tie(b.sorted, b.triangle);
+  });
+  std::vector<Twins> twins;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (i == 0 || entries[i].sorted != entries[i - 1].sorted) {
+      twins.push_back({entries[i].triangle});
+      continue;
+    }
+    const auto rotated = [&](Index t) { return rotated_to_smallest(welded[static_cast<std::size_t>(t)]); };
+    Twins& last = twins.back();
+    if (last.opposite < 0 && rotated(entries[i].triangle) != rotated(last.first)) last.opposite = entries[i].triangle;
+  }
+  return twins;
+}
+
+/// Marks the distinct faces (by index into twins) that are walls: patches of opposite twins that end at an edge of
+/// three or more distinct faces.
+std::vector<char> find_walls(const std::vector<Twins>& twins, const std::vector<Triangle>& welded) {
+  std::vector<Triangle> distinct;
+  for (const Twins& face : twins) distinct.push_back(welded[static_cast<std::size_t>(face.first)]);
+  const std::vector<HalfEdge> sides = sorted_half_edges(distinct);
+  const auto has_opposite = [&](const HalfEdge& side) {
+    return twins[static_cast<std::size_t>(side.triangle)].opposite >= 0;
+  };
+  DisjointSets patches(twins.size());
+  for_each_edge(sides, [&](std::span<const HalfEdge> edge) {
+    if (edge.size() == 2 && has_opposite(edge[0]) && has_opposite(edge[1]))
+      patches.join(edge[0].triangle, edge[1].triangle);
+  });
+  std::vector<char> patch_is_wall(twins.size(), 0), is_wall(twins.size(), 0);
+  for_each_edge(sides, [&](std::span<const HalfEdge> edge) {
+    if (edge.size() < 3 || edge.size() % 2 == 0) return;
+    for (const HalfEdge& side : edge)
+      if (has_opposite(side)) patch_is_wall[static_cast<std::size_t>(patches.root(side.triangle))] = 1;
+  });
+  for (std::size_t f = 0; f < twins.size(); ++f)
+    is_wall[f] = patch_is_wall[static_cast<std::size_t>(patches.root(static_cast<Index>(f)))];
+  return is_wall;
+}
+
+void remove_duplicates(SurfaceMesh& mesh, std::vector<std::string>& lines) {
+  const std::vector<Triangle> welded = welded_triangles(mesh);
+  const std::vector<Twins> twins = find_twins(welded);
+  if (twins.size() == welded.size()) return;
+  const std::vector<char> is_wall = find_walls(twins, welded);
+  std::vector<char> kept(welded.size(), 0);
+  for (std::size_t f = 0; f < twins.size(); ++f) {
+    kept[static_cast<std::size_t>(twins[f].first)] = 1;
+    if (is_wall[f] != 0 && twins[f].opposite >= 0) kept[static_cast<std::size_t>(twins[f].opposite)] = 1;
+  }
+  if (const std::int64_t removed = keep_triangles(mesh, kept); removed > 0)
+    lines.push_back(fmt::format("{} duplicate triangle(s) removed", removed));
+}
+
+/// Triangles connected across edges of exactly two triangles, and which of them to flip so that they agree.
+struct Orientation {
+  std::vector<Index> piece;     ///< of each triangle, numbered from 0 in the order of their first triangles
+  std::vector<char> flip;       ///< of each triangle, relative to the first one of its piece
+  std::vector<char> one_sided;  ///< of each piece
+};
+
+Orientation orient(const std::vector<HalfEdge>& sides, std::size_t triangles) {
+  struct Link {
+    Index to;
+    bool disagrees;
+  };
+  std::vector<std::vector<Link>> links(triangles);
+  for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
+    if (edge.size() != 2) return;
+    const bool disagrees = edge[0].forward == edge[1].forward;
+    links[static_cast<std::size_t>(edge[0].triangle)].push_back({edge[1].triangle, disagrees});
+    links[static_cast<std::size_t>(edge[1].triangle)].push_back({edge[0].triangle, disagrees});
+  });
+  Orientation result{std::vector<Index>(triangles, -1), std::vector<char>(triangles, 0), {}};
+  std::vector<std::size_t> front;
+  for (std::size_t seed = 0; seed < triangles; ++seed) {
+    if (result.piece[seed] >= 0) continue;
+    const auto piece = static_cast<Index>(result.one_sided.size());
+    result.one_sided.push_back(0);
+    result.piece[seed] = piece;
+    front.assign(1, seed);
+    while (!front.empty()) {
+      const std::size_t t = front.back();
+      front.pop_back();
+      for (const Link& link : links[t]) {
+        const auto to = static_cast<std::size_t>(link.to);
+        const char flip = static_cast<char>((result.flip[t] != 0) != link.disagrees);
+        if (result.piece[to] < 0) {
+          result.piece[to] = piece;
+          result.flip[to] = flip;
+          front.push_back(to);
+        } else if (result.flip[to] != flip) {
+          result.one_sided.back() = 1;
+        }
+      }
+    }
+  }
+  return result;
+}
+
+double triangle_area(const SurfaceMesh& mesh, std::size_t t) {
+  const auto at = [&](std::size_t k) -> const Vec3& {
+    return mesh.positions[static_cast<std::size_t>(mesh.triangles[t][k])];
+  };
+  return 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
+}
+
+/// Makes neighbours agree: within each piece the smaller area gives way. Returns the piece of each triangle.
+std::vector<Index> make_consistent(SurfaceMesh& mesh, const std::vector<HalfEdge>& sides,
+                                   std::vector<std::string>& lines) {
+  const Orientation orientation = orient(sides, mesh.triangles.size());
+  std::vector<double> balance(orientation.one_sided.size(), 0);  // area to keep minus area to flip
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    balance[static_cast<std::size_t>(orientation.piece[t])] +=
+        orientation.flip[t] != 0 ? -triangle_area(mesh, t) : triangle_area(mesh, t);
+  std::int64_t flipped = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto piece = static_cast<std::size_t>(orientation.piece[t]);
+    if (orientation.one_sided[piece] != 0 || (orientation.flip[t] != 0) != (balance[piece] >= 0)) continue;
+    flip_triangle(mesh, t);
+    ++flipped;
+  }
+  if (flipped > 0) lines.push_back(fmt::format("{} triangle(s) turned to agree with their neighbours", flipped));
+  const auto one_sided = std::count(orientation.one_sided.begin(), orientation.one_sided.end(), 1);
+  if (one_sided > 0)
+    lines.push_back(fmt::format("{} one-sided piece(s) cannot be oriented and stay as they are", one_sided));
+  return orientation.piece;
+}
+
+/// Marks the pieces whose own half edges cancel along every edge.
+std::vector<char> find_closed(const std::vector<HalfEdge>& sides, const std::vector<Index>& piece, std::size_t pieces) {
+  std::vector<char> closed(pieces, 1);
+  std::vector<std::pair<Index, int>> balance;  // piece, half edges forward minus backward
+  for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
+    balance.clear();
+    for (const HalfEdge& side : edge) {
+      const Index own = piece[static_cast<std::size_t>(side.triangle)];
+      auto entry = std::find_if(balance.begin(), balance.end(), [&](const auto& e) { return e.first == own; });
+      if (entry == balance.end()) entry = balance.insert(balance.end(), {own, 0});
+      entry->second += side.forward ? 1 : -1;
+    }
+    for (const auto& [own, sum] : balance)
+      if (sum != 0) closed[static_cast<std::size_t>(own)] = 0;
+  });
+  return closed;
+}
+
+void turn_outward(SurfaceMesh& mesh, const std::vector<Index>& piece, std::vector<std::string>& lines) {
+  const std::vector<HalfEdge> sides = sorted_half_edges(welded_triangles(mesh));
+  const std::size_t pieces =
+      piece.empty() ? 0 : static_cast<std::size_t>(*std::max_element(piece.begin(), piece.end())) + 1;
+  const std::vector<char> closed = find_closed(sides, piece, pieces);
+  const std::vector<char> flip = find_inverted_shells(mesh, piece, closed);
+  const auto turned = std::count(flip.begin(), flip.end(), 1);
+  if (turned == 0) return;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (flip[static_cast<std::size_t>(piece[t])] != 0) flip_triangle(mesh, t);
+  lines.push_back(pieces == 1 ? "all faces pointed inward: turned outward"
+                              : fmt::format("{} of {} pieces turned outward", turned, pieces));
+}
+
+}  // namespace
+
+std::vector<std::string> repair_mesh(SurfaceMesh& mesh) {
+  std::vector<std::string> lines;
+  remove_not_finite(mesh, lines);
+  remove_collapsed(mesh, lines);
+  remove_duplicates(mesh, lines);
+  const std::vector<Index> piece = make_consistent(mesh, sorted_half_edges(welded_triangles(mesh)), lines);
+  turn_outward(mesh, piece, lines);
+  return lines;
+}
+
+}  // namespace softreel

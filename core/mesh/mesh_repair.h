@@ -1,0 +1,26 @@
+/// Makes the triangles of a surface fit for inside and outside: no junk, one orientation, outward.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/mesh/surface_mesh.h"
+
+namespace softreel {
+
+/// Repairs `triangles` (with triangle_polygon and triangle_textures) in place; vertices, polygons, groups and their
+/// order are the file's and stay. Returns one line for each kind of repair that changed something. In this order:
+/// - triangles with vertices that are not finite, or with two corners in one place, are removed. Triangles without area
+///   but with three distinct corners stay: they close the surface;
+/// - of triangles on the same three places the first one stays. Opposite twins stay both where they are a wall inside
+/// of
+///   a body (their patch ends at edges of three or more faces), since removing one of them would leave a sheet;
+/// - neighbours across edges of two triangles are made to agree, the minority of a piece giving way to the majority (by
+///   area); one-sided pieces (Moebius strips) stay;
+/// - closed pieces are turned outward. A piece inside of another stays a cavity if it was oriented against its
+/// container,
+///   and solid if it was oriented like it.
+/// Cost: two sorts, and a ray through the possible containers of each closed piece.
+std::vector<std::string> repair_mesh(SurfaceMesh& mesh);
+
+}  // namespace softreel

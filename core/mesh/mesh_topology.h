@@ -1,0 +1,55 @@
+/// Edges and pieces of a triangle surface whose vertices were welded where they are exactly equal.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/mesh/surface_mesh.h"
+
+namespace softreel {
+
+/// One side of an edge: the triangle that has it, and whether that triangle runs from low to high.
+struct HalfEdge {
+  Index low, high;  ///< welded vertices, low < high
+  Index triangle;
+  bool forward;
+
+  bool same_edge(const HalfEdge& other) const { return low == other.low && high == other.high; }
+};
+
+/// The triangles with each vertex replaced by the first one of its position. Vertices that are not finite stay apart.
+std::vector<Triangle> welded_triangles(const SurfaceMesh& mesh);
+
+/// True if two corners are the same vertex, so that the triangle is a line or a point.
+bool is_collapsed(const Triangle& welded);
+
+/// The half edges of all triangles that are not collapsed, sorted by edge, then triangle; half edges of one edge are
+/// neighbours. Cost: linear but for the sort within a vertex.
+std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> welded);
+
+/// Calls body(std::span<const HalfEdge>) for each edge, in the order of the half edges.
+template <typename Body>
+void for_each_edge(std::span<const HalfEdge> half_edges, const Body& body) {
+  for (std::size_t begin = 0, end = 0; begin < half_edges.size(); begin = end) {
+    while (end < half_edges.size() && half_edges[end].same_edge(half_edges[begin])) ++end;
+    body(half_edges.subspan(begin, end - begin));
+  }
+}
+
+/// Disjoint sets with path halving; the root of a set is its smallest member.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count);
+  Index root(Index member);
+  void join(Index a, Index b);
+
+ private:
+  std::vector<Index> parent_;
+};
+
+/// Six times the signed volume under triangle (a, b, c) as seen from the origin.
+inline double signed_volume6(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return a.dot(b.cross(c));
+}
+
+}  // namespace softreel

@@ -1,0 +1,18 @@
+/// Wavefront OBJ of one frame: the imported mesh with other positions, in the order of its file.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh/surface_mesh.h"
+
+namespace softreel {
+
+/// The bytes of an .obj file. mesh: as imported; positions: one per vertex of the file, in the file's unit.
+///
+/// All vertices (used or not), texture coordinates, polygons and the group of each polygon are written; numbers are the
+/// shortest decimals that read back as the same doubles. Vertex groups that no polygon names cannot be said in OBJ: PLY
+/// keeps them.
+std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, const std::vector<Vec3>& positions);
+
+}  // namespace softreel

@@ -1,0 +1,128 @@
+#include "tool/export/ply_export.h"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/base/check.h"
+#include "core/mesh/readers/ply_header.h"
+
+namespace softreel {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "values are written as they lie in memory");
+
+class PlyEncoder {
+ public:
+  PlyEncoder(const SurfaceMesh& mesh, const std::vector<Vec3>& positions)
+      : mesh_(mesh), positions_(positions), vertex_textures_(find_vertex_textures()) {
+    has_face_textures_ = !mesh.polygons.corner_textures.empty() && !vertex_textures_;
+    const std::vector<Index>& offsets = mesh.polygons.offsets;
+    for (std::size_t p = 0; p + 1 < offsets.size(); ++p)
+      most_corners_ = std::max(most_corners_, offsets[p + 1] - offsets[p]);
+  }
+
+  std::vector<std::uint8_t> encode() {
+    write_header();
+    write_vertices();
+    for (std::size_t p = 0; p < mesh_.polygons.size(); ++p) write_face(p);
+    return std::move(bytes_);
+  }
+
+ private:
+  /// The texture coordinate of each vertex, if no vertex has two and every used one has one.
+  std::optional<std::vector<Vec2>> find_vertex_textures() const {
+    const std::vector<Index>& textures = mesh_.polygons.corner_textures;
+    if (textures.empty()) return std::nullopt;
+    std::vector<Vec2> of_vertex(positions_.size(), Vec2::Zero());
+    std::vector<char> known(positions_.size(), 0);
+    for (std::size_t c = 0; c < textures.size(); ++c) {
+      if (textures[c] < 0) return std::nullopt;
+      const auto v = static_cast<std::size_t>(mesh_.polygons.corner_vertices[c]);
+      const Vec2& uv = mesh_.texture_coordinates[static_cast<std::size_t>(textures[c])];
+      if (known[v] != 0 && of_vertex[v] != uv) return std::nullopt;
+      of_vertex[v] = uv;
+      known[v] = 1;
+    }
+    return of_vertex;
+  }
+
+  const char* count_type(Index most) const { return most < 256 ? "uchar" : "uint"; }
+
+  void write_header() {
+    std::string header = fmt::format(
+        "ply\nformat binary_little_endian 1.0\ncomment positions in the file's own unit and vertex order\n"
+        "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
+        positions_.size());
+    if (vertex_textures_) header += "property double s\nproperty double t\n";
+    for (const VertexGroup& group : mesh_.groups)
+      header += fmt::format("property uchar {}{}\n", detail::kPlyGroupPrefix, detail::encode_ply_name(group.name));
+    header += fmt::format("element face {}\nproperty list {} int vertex_indices\n", mesh_.polygons.size(),
+                          count_type(most_corners_));
+    if (has_face_textures_) header += fmt::format("property list {} double texcoord\n", count_type(2 * most_corners_));
+    header += "end_header\n";
+    bytes_.assign(header.begin(), header.end());
+  }
+
+  void write_vertices() {
+    std::vector<std::vector<std::uint8_t>> members;
+    for (const VertexGroup& group : mesh_.groups) {
+      members.emplace_back(positions_.size(), std::uint8_t{0});
+      for (const Index v : group.vertices) members.back()[static_cast<std::size_t>(v)] = 1;
+    }
+    for (std::size_t v = 0; v < positions_.size(); ++v) {
+      for (int k = 0; k < 3; ++k) put(positions_[v][k]);
+      if (vertex_textures_)
+        for (int k = 0; k < 2; ++k) put((*vertex_textures_)[v][k]);
+      for (const std::vector<std::uint8_t>& member : members) put(member[v]);
+    }
+  }
+
+  void write_face(std::size_t p) {
+    const PolygonList& polygons = mesh_.polygons;
+    const auto begin = static_cast<std::size_t>(polygons.offsets[p]);
+    const auto end = static_cast<std::size_t>(polygons.offsets[p + 1]);
+    put_count(static_cast<Index>(end - begin), most_corners_);
+    for (std::size_t c = begin; c < end; ++c) put(polygons.corner_vertices[c]);
+    if (!has_face_textures_) return;
+    const auto first = polygons.corner_textures.begin();
+    const bool complete = std::all_of(first + polygons.offsets[p], first + polygons.offsets[p + 1],
+                                      [](Index texture) { return texture >= 0; });
+    put_count(complete ? static_cast<Index>(2 * (end - begin)) : 0, 2 * most_corners_);
+    for (std::size_t c = begin; complete && c < end; ++c)
+      for (int k = 0; k < 2; ++k)
+        put(mesh_.texture_coordinates[static_cast<std::size_t>(polygons.corner_textures[c])][k]);
+  }
+
+  void put_count(Index count, Index most) {
+    if (most < 256)
+      put(static_cast<std::uint8_t>(count));
+    else
+      put(static_cast<std::uint32_t>(count));
+  }
+
+  template <typename T>
+  void put(T value) {
+    const auto raw = std::bit_cast<std::array<std::uint8_t, sizeof(T)>>(value);
+    bytes_.insert(bytes_.end(), raw.begin(), raw.end());
+  }
+
+  const SurfaceMesh& mesh_;
+  const std::vector<Vec3>& positions_;
+  std::optional<std::vector<Vec2>> vertex_textures_;
+  bool has_face_textures_ = false;
+  Index most_corners_ = 0;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_ply(const SurfaceMesh& mesh, const std::vector<Vec3>& positions) {
+  CHECK(positions.size() == mesh.positions.size());
+  return PlyEncoder(mesh, positions).encode();
+}
+
+}  // namespace softreel
