@@ -1,6 +1,7 @@
 #include "tool/shot/codecs.h"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <numbers>
 
@@ -14,11 +15,18 @@ namespace {
 /// Whole numbers above this have neighbours that a double cannot tell apart.
 constexpr double kLargestExactWhole = 9007199254740992.0;
 
+/// The number that a decimal spells; infinite if it is too large for a double.
+double decimal(const std::string& digits) {
+  double number = kNoEnd;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return number;
+}
+
 /// The number with the fewest digits, near `guess`, that `forward` maps to exactly `wanted`.
 template <typename T, typename Forward>
 double invert_exactly(const Forward& forward, T wanted, double guess) {
   for (int digits = 1; digits <= 17; ++digits) {
-    const double candidate = std::stod(fmt::format("{:.{}g}", guess, digits));
+    const double candidate = decimal(fmt::format("{:.{}g}", guess, digits));
     if (forward(candidate) == wanted) return candidate;
   }
   double below = guess, above = guess;
@@ -96,7 +104,7 @@ TomlValue print_number(double value) {
 
 TomlValue print_number(float value) {
   // The shortest decimal of the single, as a double: it prints as short and reads back as the same single.
-  return toml_value(std::stod(fmt::format("{}", value)));
+  return toml_value(decimal(fmt::format("{}", value)));
 }
 
 Codec<double> number(const Range& range) {
@@ -148,15 +156,19 @@ Codec<std::string> text() {
   return codec;
 }
 
+bool is_file_name(const std::string& name) {
+  const bool bad_letter = std::any_of(name.begin(), name.end(), [](char c) {
+    return c == '/' || static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
+  });
+  return !name.empty() && !bad_letter && name != "." && name != "..";
+}
+
 Codec<std::string> file_name() {
   Codec<std::string> codec = text();
-  codec.accepted = "text that can be part of a file's name: no '/', no control characters, not '.' or '..'";
+  codec.accepted = kFileNameAccepted;
   codec.parse = [parse = codec.parse](const Place& place, const TomlValue& value) {
     std::string name = parse(place, value);
-    const bool bad_letter = std::any_of(name.begin(), name.end(), [](char c) {
-      return c == '/' || static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
-    });
-    if (bad_letter || name == "." || name == "..") throw value_error(place, value, "files are named after it");
+    if (!is_file_name(name)) throw value_error(place, value, "files are named after it");
     return name;
   };
   return codec;

@@ -49,6 +49,9 @@ Codec<float> single(const Range& range);
 Codec<bool> toggle();
 Codec<std::string> text();
 /// Text that can be part of a file's name.
+inline constexpr const char* kFileNameAccepted =
+    "text that can be part of a file's name: no '/', no control characters, not '.' or '..'";
+bool is_file_name(const std::string& name);
 Codec<std::string> file_name();
 /// A path, relative to the file that says it (or to the working directory in an override); printed absolute, so that a
 /// written shot can lie anywhere. An empty path is left out.

@@ -118,6 +118,10 @@ void add_placement_fields(Table<BodySettings>& t) {
 }
 
 void check_body(const Place& place, const TomlValue& value, BodySettings& body) {
+  if (!is_file_name(body.name)) {
+    const FieldText name{"", "", "", "", kFileNameAccepted, "", false, false};
+    throw value_error({place.path, &name, place.problems}, value, "files are named after the body", "Rename it.");
+  }
   check_alternatives(place, value, "body.*");
   if (body.edge == 0 && body.tets == 0) body.tets = kDefaultTets;
   body.mesh_origin = value.find("mesh")->origin;

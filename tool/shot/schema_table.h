@@ -90,7 +90,7 @@ struct Table {
     };
     field.write = [access, print = codec.print](const S& in) { return print(std::invoke(access, in)); };
     if (default_value.empty())
-      if (const auto value = field.write(S{})) field.text.default_value = to_text(*value);
+      if (const auto value = field.write(default_struct())) field.text.default_value = to_text(*value);
     fields.push_back(std::move(field));
     return *this;
   }
@@ -173,7 +173,7 @@ struct Table {
     field.write = [each, &inner](const S& in) -> std::optional<TomlValue> {
       TomlValue::Table entries;
       each(in, [&](const std::string& key, const Inner& item) {
-        entries.push_back({key, {}, as_section(write_table(inner, item))});
+        entries.push_back(toml_entry(key, as_section(write_table(inner, item))));
       });
       if (entries.empty()) return std::nullopt;
       return as_section(toml_value(std::move(entries)));
@@ -189,6 +189,10 @@ struct Table {
   }
 
  private:
+  static const S& default_struct() {
+    static const S defaults{};
+    return defaults;
+  }
   static Field<S> table_field(const std::string& name, const std::string& type, const std::string& sentence) {
     Field<S> field;
     field.text = {name, type, "", "", type == "list of tables" ? "a list of tables" : "a table", sentence, true, false};
@@ -232,7 +236,7 @@ template <typename S>
 TomlValue write_table(const Table<S>& table, const S& in) {
   TomlValue::Table entries;
   for (const Field<S>& field : table.fields)
-    if (auto value = field.write(in)) entries.push_back({field.text.path, {}, std::move(*value)});
+    if (auto value = field.write(in)) entries.push_back(toml_entry(field.text.path, std::move(*value)));
   return toml_value(std::move(entries));
 }
 

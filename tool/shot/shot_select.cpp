@@ -86,7 +86,7 @@ const Table<TermText>& term_table() {
         .add_optional_table("plane", &TermText::plane, plane_table())
         .add_optional_table("nearest", &TermText::nearest, nearest_table())
         .add("group", &TermText::group, optional_of(text()), "", "Points of a named group or material of the mesh.")
-        .add("all", &TermText::all, toggle(), "", "All points.")
+        .add("all", &TermText::all, absent_if_zero(toggle()), "", "All points.", "false")
         .add("unit", &TermText::unit, choice<SelectionUnit>({{"m", SelectionUnit::Meter}, {"box", SelectionUnit::Box}}),
              "", "What the numbers count: metres in the scene, or 0 to 1 along each axis of the placed body's box.");
     t.check = check_term;

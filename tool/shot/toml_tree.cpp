@@ -132,12 +132,17 @@ void append_section(const TomlValue::Table& entries, const std::string& path, st
     const std::string name = path.empty() ? key_text(entry.key) : path + "." + key_text(entry.key);
     if (const auto* items = entry.value.array()) {
       for (const TomlValue& item : *items) {
-        out += "\n[[" + name + "]]\n";
+        out += fmt::format("\n[[{}]]\n", name);
         append_section(*item.table(), name, out);
       }
     } else {
-      out += "\n[" + name + "]\n";
-      append_section(*entry.value.table(), name, out);
+      const TomlValue::Table& inner = *entry.value.table();
+      // [body] alone says nothing where [body.NAME] follows.
+      const bool only_sections = !inner.empty() && std::all_of(inner.begin(), inner.end(), [](const TomlEntry& one) {
+        return one.value.section;
+      });
+      if (!only_sections) out += fmt::format("\n[{}]\n", name);
+      append_section(inner, name, out);
     }
   }
 }
@@ -153,6 +158,10 @@ const TomlValue* TomlValue::find(std::string_view key) const {
 
 TomlValue* TomlValue::find(std::string_view key) {
   return const_cast<TomlValue*>(std::as_const(*this).find(key));
+}
+
+TomlEntry toml_entry(std::string key, TomlValue value) {
+  return {std::move(key), Origin(), std::move(value)};
 }
 
 TomlValue read_toml_file(const std::string& path) {

@@ -51,6 +51,9 @@ TomlValue toml_value(T value) {
   return TomlValue{std::move(value), {}, false};
 }
 
+/// An entry that was written nowhere.
+TomlEntry toml_entry(std::string key, TomlValue value);
+
 /// Reads a file. Throws input_error if it cannot be read or is no TOML, with line and column and what to do next.
 TomlValue read_toml_file(const std::string& path);
 
