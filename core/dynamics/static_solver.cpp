@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/dynamics/linear_system.h"
+#include "core/dynamics/rigid_modes.h"
 
 namespace softreel {
 namespace {
@@ -32,8 +33,8 @@ double greatest_modulus(const ElasticLaw& law) {
   return law.lambda + 2 * law.mu;
 }
 
-/// Mass proportional, so that a free piece keeps its centre of mass exactly; nothing on pieces that a pin holds, which
-/// holds a whole tetrahedron and with it every rigid motion.
+/// Mass proportional, so that a free piece has its centre of mass where it was; nothing on pieces that a pin holds,
+/// which holds a whole tetrahedron and with it every rigid motion.
 std::vector<double> rigid_shifts(const Simulator::Parts& parts, std::span<const std::uint8_t> held) {
   std::vector<std::uint8_t> fixed(static_cast<std::size_t>(parts.pieces.count), 0);
   for (std::size_t i = 0; i < held.size(); ++i)
@@ -54,9 +55,10 @@ std::vector<double> rigid_shifts(const Simulator::Parts& parts, std::span<const 
 }  // namespace
 
 StaticSolver::StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t> held,
-                           const std::vector<ActivePull>& pulls)
+                           std::span<const std::uint8_t> held_pieces, const std::vector<ActivePull>& pulls)
     : parts_(parts),
       held_(held),
+      held_pieces_(held_pieces),
       pulls_(pulls),
       shares_(parts.body.tets.size(), 1.0),
       node_terms_(rigid_shifts(parts, held)) {}
@@ -145,6 +147,7 @@ bool StaticSolver::find_direction(const StaticState& state, double tolerance, st
     const SolveReport report = solve_linear(state, state.forces, tolerance, direction);
     for (std::size_t i = 0; i < direction.size(); ++i)
       if (held_[i] != 0) direction[i].setZero();
+    remove_rigid_motion(parts_.pieces, held_pieces_, parts_.masses.mass, state.positions, direction);
     if (report.status != SolveStatus::Breakdown && is_positive(dot(direction, state.forces))) return true;
   }
   return false;

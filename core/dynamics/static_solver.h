@@ -23,8 +23,9 @@ struct StaticState {
 /// One search for equilibrium under fixed constraints.
 class StaticSolver {
  public:
-  /// held: per node; pulls: at the frame. Everything is kept by reference.
-  StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t> held, const std::vector<ActivePull>& pulls);
+  /// held: per node; held_pieces: by a pin or pull; pulls: at the frame. Everything is kept by reference.
+  StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t> held, std::span<const std::uint8_t> held_pieces,
+               const std::vector<ActivePull>& pulls);
 
   /// Moves the held nodes of `start` to `targets` by one full step of the linearised body, then iterates until
   /// |forces| <= tolerance * scale or round-off. The result is in `state`, converged or not.
@@ -47,6 +48,7 @@ class StaticSolver {
 
   Simulator::Parts& parts_;
   std::span<const std::uint8_t> held_;
+  std::span<const std::uint8_t> held_pieces_;
   const std::vector<ActivePull>& pulls_;
   std::vector<double> shares_;      ///< 1 per element
   std::vector<double> node_terms_;  ///< holds the rigid motions of pieces without a pin

@@ -79,10 +79,11 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
     report.culprit = pinned.conflict;
     return report;
   }
-  check_held(*this, held_pieces(pinned, pulls), frame);
+  const std::vector<std::uint8_t> held = held_pieces(pinned, pulls);
+  check_held(*this, held, frame);
   StaticState next{state.positions, state.rotations, {}};
   follow_rigidly(pieces, pinned.held, pinned.targets, next.positions, next.rotations, body.tets);
-  StaticSolver solver(*this, pinned.held, pulls);
+  StaticSolver solver(*this, pinned.held, held, pulls);
   report.solve = solve_in_steps(*this, solver, next, pinned.held, pinned.targets);
   report.nonlinear_iterations = solver.iterations();
   if (!report.ok()) {

@@ -112,7 +112,7 @@ inline Real newton_step(const Quartic<Real>& p, const Real& x) {
 }
 
 /// Relative sizes that the acceptance tests use, of matrices whose greatest entry is 1.
-inline constexpr double kResidualTolerance = 2e-14;  ///< |N q - mu q|: some round-offs of N
+inline constexpr double kResidualTolerance = 5e-15;  ///< |N q - mu q|: some round-offs of N
 inline constexpr double kEigenvalueTolerance =
     2e-14;                                         ///< mu counts as the greatest eigenvalue if none is above by more
 inline constexpr double kSmallestAdjugate = 1e-6;  ///< below, adj(N - mu I) q is made of round-off or of a tie

@@ -100,6 +100,13 @@ inline Embedding embed_nodes(const TetMesh& mesh) {
   return embedding;
 }
 
+/// Centre of an element at rest.
+inline Vec3 centroid(const TetMesh& mesh, std::size_t e) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index node : mesh.tets[e]) sum += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
+  return sum;
+}
+
 /// Nodes for which `takes` is true, in order.
 template <typename Predicate>
 std::vector<Index> select_nodes(const TetMesh& mesh, const Predicate& takes) {
