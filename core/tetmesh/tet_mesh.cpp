@@ -1,85 +1,106 @@
 #include "core/tetmesh/tet_mesh.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "core/tetmesh/disjoint_sets.h"
 
 namespace softreel {
 namespace {
 
-/// A face of an element: its sorted nodes, so that both owners have the same.
-struct Face {
-  Triangle sorted;
-  Index element;
-  Index local;
-};
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
 
 /// Local faces, counter-clockwise seen from outside; face k lies opposite node k.
 constexpr std::array<std::array<std::size_t, 3>, 4> kFaceNodes{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
-Triangle face_nodes(const Tet& tet, Index local) {
-  const auto& nodes = kFaceNodes[static_cast<std::size_t>(local)];
+Triangle face_nodes(const Tet& tet, std::size_t local) {
+  const auto& nodes = kFaceNodes[local];
   return {tet[nodes[0]], tet[nodes[1]], tet[nodes[2]]};
 }
 
-/// All faces of all elements; equal faces are neighbours, ordered by element.
-std::vector<Face> sorted_faces(const TetMesh& mesh) {
-  std::vector<Face> faces;
-  faces.reserve(4 * mesh.tets.size());
+/// Face k of element e is number 4 e + k.
+using FaceNumber = std::int64_t;
+
+/// A face without its smallest node: both owners have the same two others.
+struct Face {
+  Index middle, largest;
+  FaceNumber number;
+};
+
+/// Calls visit(smallest node, rest of the face) for all faces.
+template <typename Visit>
+void visit_faces(const TetMesh& mesh, const Visit& visit) {
   for (std::size_t e = 0; e < mesh.tets.size(); ++e)
-    for (Index local = 0; local < 4; ++local) {
-      Triangle face = face_nodes(mesh.tets[e], local);
+    for (std::size_t k = 0; k < 4; ++k) {
+      Triangle face = face_nodes(mesh.tets[e], k);
       std::sort(face.begin(), face.end());
-      faces.push_back({face, static_cast<Index>(e), local});
+      visit(face[0], Face{face[1], face[2], static_cast<FaceNumber>(4 * e + k)});
     }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return a.sorted != b.sorted ? a.sorted < b.sorted : a.element < b.element;
-  });
-  return faces;
 }
 
-Index find_root(std::vector<Index>& parent, Index i) {
-  while (parent[static_cast<std::size_t>(i)] != i) {
-    Index& up = parent[static_cast<std::size_t>(i)];
-    up = parent[static_cast<std::size_t>(up)];
-    i = up;
+/// Calls visit(begin, end) for each run of equal faces, in a fixed order; a run lists its owners in ascending order.
+/// Faces are bucketed by their smallest node, so that only a few dozen are ever sorted together.
+template <typename Visit>
+void visit_equal_faces(const TetMesh& mesh, const Visit& visit) {
+  std::vector<std::int64_t> next(mesh.nodes.size() + 1, 0);
+  visit_faces(mesh, [&](Index smallest, const Face&) { ++next[at(smallest) + 1]; });
+  for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
+  std::vector<Face> faces(4 * mesh.tets.size());
+  visit_faces(mesh,
+              [&](Index smallest, const Face& face) { faces[static_cast<std::size_t>(next[at(smallest)]++)] = face; });
+  const Face* begin = faces.data();
+  for (std::size_t node = 0; node < mesh.nodes.size(); ++node) {
+    Face* const bucket = faces.data() + (begin - faces.data());
+    Face* const bucket_end = faces.data() + next[node];
+    std::sort(bucket, bucket_end, [](const Face& a, const Face& b) {
+      if (a.middle != b.middle) return a.middle < b.middle;
+      return a.largest != b.largest ? a.largest < b.largest : a.number < b.number;
+    });
+    while (begin < bucket_end) {
+      const Face* end = begin + 1;
+      while (end < bucket_end && end->middle == begin->middle && end->largest == begin->largest) ++end;
+      visit(begin, end);
+      begin = end;
+    }
   }
-  return i;
 }
 
 }  // namespace
 
-std::vector<Triangle> boundary_faces(const TetMesh& mesh) {
-  std::vector<Face> faces = sorted_faces(mesh);
-  std::vector<std::pair<Index, Index>> single;
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t end = i + 1;
-    while (end < faces.size() && faces[end].sorted == faces[i].sorted) ++end;
-    if (end == i + 1) single.emplace_back(faces[i].element, faces[i].local);
-    i = end;
-  }
+std::vector<BoundaryFace> find_boundary(const TetMesh& mesh) {
+  std::vector<FaceNumber> single;
+  visit_equal_faces(mesh, [&](const Face* begin, const Face* end) {
+    if (end == begin + 1) single.push_back(begin->number);
+  });
   std::sort(single.begin(), single.end());
-  std::vector<Triangle> boundary;
+  std::vector<BoundaryFace> boundary;
   boundary.reserve(single.size());
-  for (const auto& [element, local] : single)
-    boundary.push_back(face_nodes(mesh.tets[static_cast<std::size_t>(element)], local));
+  for (const FaceNumber number : single) {
+    const auto element = static_cast<std::size_t>(number / 4);
+    boundary.push_back(
+        {face_nodes(mesh.tets[element], static_cast<std::size_t>(number % 4)), static_cast<Index>(element)});
+  }
   return boundary;
 }
 
+std::vector<Triangle> boundary_faces(const TetMesh& mesh) {
+  std::vector<Triangle> triangles;
+  for (const BoundaryFace& face : find_boundary(mesh)) triangles.push_back(face.nodes);
+  return triangles;
+}
+
 std::vector<Index> face_connected_pieces(const TetMesh& mesh) {
-  std::vector<Index> parent(mesh.tets.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const std::vector<Face> faces = sorted_faces(mesh);
-  for (std::size_t i = 1; i < faces.size(); ++i) {
-    if (faces[i].sorted != faces[i - 1].sorted) continue;
-    const Index a = find_root(parent, faces[i].element), b = find_root(parent, faces[i - 1].element);
-    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-  std::vector<Index> number(mesh.tets.size(), -1), piece(mesh.tets.size());
+  DisjointSets sets(mesh.tets.size());
+  visit_equal_faces(mesh, [&](const Face* begin, const Face* end) {
+    for (const Face* face = begin + 1; face < end; ++face)
+      sets.join(static_cast<Index>(begin->number / 4), static_cast<Index>(face->number / 4));
+  });
+  std::vector<Index> piece(mesh.tets.size());
   Index count = 0;
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
-    Index& name = number[static_cast<std::size_t>(find_root(parent, static_cast<Index>(e)))];
-    if (name < 0) name = count++;
-    piece[e] = name;
+    const Index root = sets.root(static_cast<Index>(e));
+    piece[e] = at(root) == e ? count++ : piece[at(root)];  // a root is the first of its piece
   }
   return piece;
 }

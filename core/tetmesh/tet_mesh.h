@@ -25,7 +25,16 @@ inline double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3
   return (b - a).cross(c - a).dot(d - a) / 6.0;
 }
 
-/// Faces that belong to one element only, counter-clockwise seen from outside, ordered by element and local face.
+/// A face that belongs to one element only.
+struct BoundaryFace {
+  Triangle nodes;  ///< counter-clockwise seen from outside
+  Index element;
+};
+
+/// Faces that belong to one element only, ordered by element and local face. Linear time.
+std::vector<BoundaryFace> find_boundary(const TetMesh& mesh);
+
+/// Their nodes alone, in the same order.
 std::vector<Triangle> boundary_faces(const TetMesh& mesh);
 
 /// Number of the piece of each element; elements that share a face are in one piece. Pieces are numbered from 0 in the

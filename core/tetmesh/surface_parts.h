@@ -1,0 +1,31 @@
+/// The connected parts of a surface: shells that a body may lose where the lattice is too coarse.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/mesh/surface_mesh.h"
+
+namespace softreel {
+
+/// Triangles that are joined through vertices of equal position.
+struct SurfacePart {
+  Index triangles = 0;
+  double volume = 0;  ///< signed, m^3: negative if inside out, or a cavity
+  double area = 0;    ///< m^2
+  Bounds box;
+  std::string name;  ///< for messages: "part 2 of 3 (group 'eye_L', 320 triangles)"
+};
+
+struct SurfaceParts {
+  std::vector<SurfacePart> parts;     ///< in the order of their first triangle
+  std::vector<Index> triangle_parts;  ///< per triangle
+
+  double area() const;
+  /// Volume of all parts: cavities count negative if the whole is positive. Magnitude, m^3.
+  double volume() const;
+};
+
+SurfaceParts find_parts(const SurfaceMesh& surface);
+
+}  // namespace softreel

@@ -1,0 +1,101 @@
+#include "core/tetmesh/tet_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/tetmesh/triangle_tree.h"
+
+namespace softreel {
+namespace {
+
+constexpr std::int64_t kGrain = 8192;
+
+std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::size_t e) {
+  std::array<Vec3, 4> x;
+  for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.nodes[static_cast<std::size_t>(mesh.tets[e][k])];
+  return x;
+}
+
+double degrees(double radians) {
+  return radians * 180.0 / std::numbers::pi;
+}
+
+/// Largest distance of the samples of triangles to a tree.
+double farthest_sample(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                       const TriangleTree& tree, const Threads& threads) {
+  const auto n = static_cast<std::int64_t>(triangles.size());
+  constexpr std::int64_t kSampleGrain = 256;
+  std::vector<double> farthest(static_cast<std::size_t>((n + kSampleGrain - 1) / kSampleGrain), 0.0);
+  threads.for_chunks(n, kSampleGrain, [&](std::int64_t begin, std::int64_t end) {
+    double& most = farthest[static_cast<std::size_t>(begin / kSampleGrain)];
+    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+      std::array<Vec3, 3> x;
+      for (std::size_t k = 0; k < 3; ++k) x[k] = points[static_cast<std::size_t>(triangles[t][k])];
+      const std::array<Vec3, 7> samples{
+          x[0], x[1], x[2], 0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0]), (x[0] + x[1] + x[2]) / 3.0};
+      for (const Vec3& sample : samples) most = std::max(most, tree.nearest(sample).squared_distance);
+    }
+  });
+  return farthest.empty() ? 0.0 : std::sqrt(*std::max_element(farthest.begin(), farthest.end()));
+}
+
+}  // namespace
+
+DihedralRange dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  // Outward normals; the angle at an edge is the supplement of that between the normals of its two faces.
+  std::array<Vec3, 4> normals{(c - b).cross(d - b), (d - a).cross(c - a), (b - a).cross(d - a), (c - a).cross(b - a)};
+  for (Vec3& normal : normals) normal /= normal.norm();
+  double low = 1, high = -1;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      const double cosine = -normals[i].dot(normals[j]);
+      if (!(cosine >= low)) low = cosine;
+      if (!(cosine <= high)) high = cosine;
+    }
+  const auto angle = [](double cosine) {
+    return std::acos(std::isnan(cosine) ? cosine : std::clamp(cosine, -1.0, 1.0));
+  };
+  return {angle(high), angle(low)};
+}
+
+TetQuality measure_quality(const TetMesh& mesh, const Threads& threads) {
+  TetQuality quality;
+  if (mesh.tets.empty()) return quality;
+  std::vector<DihedralRange> angles(mesh.tets.size());
+  std::vector<double> volumes(mesh.tets.size());
+  threads.for_chunks(static_cast<std::int64_t>(mesh.tets.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
+      const auto [a, b, c, d] = corners_of(mesh, e);
+      angles[e] = dihedral_range(a, b, c, d);
+      volumes[e] = tet_volume(a, b, c, d);
+    }
+  });
+  std::size_t least = 0, most = 0, smallest = 0;
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    if (!(angles[e].min >= angles[least].min)) least = e;
+    if (!(angles[e].max <= angles[most].max)) most = e;
+    if (!(volumes[e] >= volumes[smallest])) smallest = e;
+    quality.volume += volumes[e];
+  }
+  quality.min_dihedral = degrees(angles[least].min);
+  quality.min_dihedral_tet = static_cast<Index>(least);
+  quality.max_dihedral = degrees(angles[most].max);
+  quality.max_dihedral_tet = static_cast<Index>(most);
+  quality.min_volume = volumes[smallest];
+  quality.min_volume_tet = static_cast<Index>(smallest);
+  const auto percentile = static_cast<std::ptrdiff_t>(angles.size() / 100);
+  std::nth_element(angles.begin(), angles.begin() + percentile, angles.end(),
+                   [](const DihedralRange& x, const DihedralRange& y) { return x.min < y.min; });
+  quality.first_percentile_dihedral = degrees(angles[static_cast<std::size_t>(percentile)].min);
+  return quality;
+}
+
+SurfaceDeviation measure_deviation(const SurfaceMesh& surface, const TetMesh& mesh, const Threads& threads) {
+  const std::vector<Triangle> boundary = boundary_faces(mesh);
+  const TriangleTree surface_tree(surface.positions, surface.triangles), boundary_tree(mesh.nodes, boundary);
+  return {farthest_sample(surface.positions, surface.triangles, boundary_tree, threads),
+          farthest_sample(mesh.nodes, boundary, surface_tree, threads)};
+}
+
+}  // namespace softreel

@@ -1,0 +1,36 @@
+/// How good tetrahedra are: dihedral angles, volumes, and how far their boundary is from a surface.
+#pragma once
+
+#include "core/base/parallel.h"
+#include "core/mesh/surface_mesh.h"
+#include "core/tetmesh/tet_mesh.h"
+
+namespace softreel {
+
+struct TetQuality {
+  double min_dihedral = 0, max_dihedral = 0;  ///< degrees
+  double first_percentile_dihedral = 0;       ///< degrees: 1 % of the elements have a smaller least angle
+  Index min_dihedral_tet = -1, max_dihedral_tet = -1;
+  double volume = 0, min_volume = 0;  ///< m^3, whole and smallest element
+  Index min_volume_tet = -1;
+};
+
+/// Smallest and largest dihedral angle of one tetrahedron, radians. NaN for one without volume.
+struct DihedralRange {
+  double min, max;
+};
+DihedralRange dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// Measures all elements; node indices must be valid. Of a mesh without elements: all 0 and -1.
+TetQuality measure_quality(const TetMesh& mesh, const Threads& threads);
+
+/// Largest distances between a surface and the boundary of a mesh, sampled at vertices, edge midpoints and centroids of
+/// the triangles of either; m. Vertices that no triangle uses do not count.
+struct SurfaceDeviation {
+  double from_surface = 0;   ///< largest distance of a surface sample to the boundary of the mesh
+  double from_boundary = 0;  ///< largest distance of a boundary sample to the surface
+  double two_way() const { return from_surface > from_boundary ? from_surface : from_boundary; }
+};
+SurfaceDeviation measure_deviation(const SurfaceMesh& surface, const TetMesh& mesh, const Threads& threads);
+
+}  // namespace softreel

@@ -1,0 +1,151 @@
+#include "core/tetmesh/tetrahedralize.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/base/check.h"
+#include "core/base/error.h"
+#include "core/tetmesh/boundary_mending.h"
+#include "core/tetmesh/mesh_pieces.h"
+#include "core/tetmesh/tet_quality.h"
+
+namespace softreel {
+namespace {
+
+/// More than this does not fit the 32-bit indices of what comes later.
+constexpr double kMaxTets = 1.5e8;
+
+/// Tetrahedra of a lattice: 12 per cubic cell inside, and so many per square cell of the surface.
+constexpr double kTetsPerCell = 12.0, kTetsPerSquare = 6.5;
+
+/// One body on its way; borrowed from the caller of tetrahedralize.
+struct Job {
+  const SurfaceMesh& surface;
+  const SurfaceParts& parts;
+  const Bounds& box;
+  const std::string& name;
+  const Threads& threads;
+  const Log& log;
+  StageTimes& times;
+};
+
+double predicted_tets(double volume, double area, double edge) {
+  return kTetsPerCell * volume / (edge * edge * edge) + kTetsPerSquare * area / (edge * edge);
+}
+
+void require_size(const Job& job, double edge) {
+  const double reach = job.box.size().maxCoeff() / edge;
+  const double tets = predicted_tets(job.parts.volume(), job.parts.area(), edge);
+  if (reach < 0.45 * kMaxLatticeCoordinate && tets < kMaxTets) return;
+  throw input_error(fmt::format(
+      "body '{}': edge = {:.4g} m makes about {:.3g} tetrahedra in a box {:.4g} edges long. Accepted: at most {:.2g} "
+      "tetrahedra and {:.2g} edges. Use a larger edge, or check the unit of the file (fit sets the height in m).",
+      job.name, edge, tets, reach, kMaxTets, 0.45 * kMaxLatticeCoordinate));
+}
+
+/// Stuffs, mends and cleans; no promises checked yet.
+StuffedMesh fill_surface(const Job& job, double edge) {
+  require_size(job, edge);
+  const LatticeFrame frame{job.box.center(), edge};
+  const SurfaceDistance distance = [&] {
+    const ScopedStage stage(job.times, "tetrahedralize/distance");
+    return measure_distance(job.surface.positions, job.surface.triangles, frame, job.threads);
+  }();
+  const ScopedStage stage(job.times, "tetrahedralize/lattice");
+  StuffedMesh stuffed = stuff_isosurface(distance.lattice, job.threads);
+  const BoundaryMending mending = mend_boundary(stuffed);
+  if (mending.copied_nodes > 0 || mending.removed_tets > 0)
+    job.log.info(
+        fmt::format("body '{}': {} nodes where parts touched at a vertex or edge were parted, {} tetrahedra where "
+                    "the body touched itself were removed",
+                    job.name, mending.copied_nodes, mending.removed_tets));
+  drop_crumbs(stuffed, distance, job.parts, job.name, job.log);
+  require_all_parts(stuffed, distance, job.parts, job.name, job.log);
+  order_nodes(stuffed);
+  return stuffed;
+}
+
+/// The promises of the header, tested on every mesh.
+void require_quality(const Job& job, const TetMesh& mesh) {
+  const ScopedStage stage(job.times, "tetrahedralize/check");
+  const auto nodes = static_cast<Index>(mesh.nodes.size());
+  for (const Tet& tet : mesh.tets)
+    for (const Index node : tet) {
+      CHECK(node >= 0);
+      CHECK(node < nodes);
+    }
+  const TetQuality quality = measure_quality(mesh, job.threads);
+  if (quality.min_volume > 0 && quality.min_dihedral >= kMinDihedral && quality.max_dihedral <= kMaxDihedral) return;
+  throw work_error(fmt::format(
+      "body '{}': a tetrahedron is worse than promised: volume {:.3g} m^3 (element {}), dihedral angles {:.4g} to "
+      "{:.4g} "
+      "degrees (elements {}, {}). Accepted: positive volume, {} to {} degrees. The body may be too far from the origin "
+      "for its size; move it nearer, or use another edge length.",
+      job.name, quality.min_volume, quality.min_volume_tet, quality.min_dihedral, quality.max_dihedral,
+      quality.min_dihedral_tet, quality.max_dihedral_tet, kMinDihedral, kMaxDihedral));
+}
+
+/// The edge that gives `tets` by the prediction; it falls monotonously with the edge, so halving finds it.
+double edge_for_tets(double volume, double area, double tets) {
+  double low = 0, high = std::sqrt((kTetsPerSquare * area + kTetsPerCell * std::pow(volume, 2.0 / 3.0)) / tets) * 8.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (predicted_tets(volume, area, middle) > tets ? low : high) = middle;
+  }
+  return high;
+}
+
+StuffedMesh fill_with_count(const Job& job, double wanted) {
+  double edge = edge_for_tets(job.parts.volume(), job.parts.area(), wanted);
+  StuffedMesh best;
+  double best_error = 1e300;
+  constexpr int kSteps = 6;
+  for (int step = 0; step < kSteps; ++step) {
+    StuffedMesh stuffed = fill_surface(job, edge);
+    const auto count = static_cast<double>(stuffed.mesh.tets.size());
+    const double error = std::abs(count / wanted - 1.0);
+    if (error < best_error) {
+      best_error = error;
+      best = std::move(stuffed);
+    }
+    if (best_error <= 0.05) break;
+    edge *= std::cbrt(count / wanted);
+  }
+  return best;
+}
+
+void require_params(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name) {
+  if ((params.edge > 0) == (params.tets > 0))
+    throw input_error(
+        fmt::format("body '{}': edge = {} m, tets = {}: exactly one of the two sizes must be set. Accepted: "
+                    "one above 0. Give tets (for example 20000) and leave edge out.",
+                    name, params.edge, params.tets));
+  if (surface.triangles.empty())
+    throw input_error(
+        fmt::format("body '{}': its surface has no triangles, so there is nothing to fill. Accepted: a "
+                    "surface that encloses a volume. Check the mesh file.",
+                    name));
+}
+
+}  // namespace
+
+TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name,
+                       const Threads& threads, const Log& log, StageTimes& times) {
+  require_params(surface, params, name);
+  const SurfaceParts parts = find_parts(surface);
+  const Bounds box = used_bounds(surface);
+  const Job job{surface, parts, box, name, threads, log, times};
+  StuffedMesh stuffed =
+      params.edge > 0 ? fill_surface(job, params.edge) : fill_with_count(job, static_cast<double>(params.tets));
+  if (stuffed.mesh.tets.empty())
+    throw input_error(
+        fmt::format("body '{}': its surface encloses no volume that a lattice with edge {:.4g} m can fill. "
+                    "Accepted: a surface that encloses a volume. Close or thicken it, or use a smaller edge.",
+                    name, stuffed.mesh.lattice.spacing));
+  require_quality(job, stuffed.mesh);
+  return std::move(stuffed.mesh);
+}
+
+}  // namespace softreel

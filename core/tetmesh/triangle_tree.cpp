@@ -1,0 +1,82 @@
+#include "core/tetmesh/triangle_tree.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace softreel {
+namespace {
+
+constexpr Index kLeafSize = 4;
+
+}  // namespace
+
+Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 - d3 > 0) return a + d1 / (d1 - d3) * ab;
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 - d6 > 0) return a + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && (d4 - d3) + (d5 - d6) > 0)
+    return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  const double sum = va + vb + vc;
+  if (!(sum > 0)) return a;  // a triangle without area whose edges were all declined by round-off
+  return a + vb / sum * ab + vc / sum * ac;
+}
+
+TriangleTree::TriangleTree(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles)
+    : order_(triangles.size()) {
+  std::iota(order_.begin(), order_.end(), 0);
+  corners_.reserve(triangles.size());
+  std::vector<Vec3> centroids;
+  centroids.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles) {
+    corners_.push_back({points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)],
+                        points[static_cast<std::size_t>(c)]});
+    centroids.push_back((corners_.back()[0] + corners_.back()[1] + corners_.back()[2]) / 3.0);
+  }
+  if (triangles.empty()) return;
+  nodes_.reserve(triangles.size());
+  build(centroids, 0, static_cast<Index>(triangles.size()));
+  std::vector<std::array<Vec3, 3>> sorted;
+  sorted.reserve(corners_.size());
+  for (const Index t : order_) sorted.push_back(corners_[static_cast<std::size_t>(t)]);
+  corners_.swap(sorted);
+}
+
+void TriangleTree::build(std::vector<Vec3>& centroids, Index begin, Index end) {
+  const auto number = static_cast<Index>(nodes_.size());
+  Node node{Vec3::Constant(1e300), Vec3::Constant(-1e300), begin, end, 0};
+  Vec3 low = node.min, high = node.max;
+  for (Index i = begin; i < end; ++i) {
+    const auto t = static_cast<std::size_t>(order_[static_cast<std::size_t>(i)]);
+    for (const Vec3& corner : corners_[t]) {
+      node.min = node.min.cwiseMin(corner);
+      node.max = node.max.cwiseMax(corner);
+    }
+    low = low.cwiseMin(centroids[t]);
+    high = high.cwiseMax(centroids[t]);
+  }
+  nodes_.push_back(node);
+  if (end - begin <= kLeafSize) return;
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  const Index middle = begin + (end - begin) / 2;
+  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](Index a, Index b) {
+    const double x = centroids[static_cast<std::size_t>(a)][axis], y = centroids[static_cast<std::size_t>(b)][axis];
+    return x != y ? x < y : a < b;
+  });
+  build(centroids, begin, middle);
+  nodes_[static_cast<std::size_t>(number)].right = static_cast<Index>(nodes_.size());
+  build(centroids, middle, end);
+}
+
+}  // namespace softreel

@@ -1,0 +1,99 @@
+/// A tree of boxes over triangles: the nearest triangle to a point, and the frame of fast winding numbers.
+#pragma once
+
+#include <vector>
+
+#include "core/base/types.h"
+
+namespace softreel {
+
+/// The point of a triangle that is nearest to `p` (Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5).
+Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Bounding-volume tree, built by halving triangles along the longest side of their centroids' box. The same input
+/// gives the same tree. Reading is thread-safe.
+class TriangleTree {
+ public:
+  /// A node covers triangles [begin, end) of `order()`. Its left child is the next node; `right` is 0 for leaves.
+  struct Node {
+    Vec3 min, max;
+    Index begin, end, right;
+    bool is_leaf() const { return right == 0; }
+  };
+  struct Nearest {
+    Index triangle = -1;  ///< -1: none accepted
+    double squared_distance = 1e300;
+    Vec3 point = Vec3::Zero();
+  };
+
+  /// Copies what it needs. An empty list is allowed.
+  TriangleTree(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);
+
+  /// Nearest triangle nearer than sqrt(squared_limit) for which accept(triangle, nearest point) holds; ties go to the
+  /// lowest number.
+  template <typename Accept>
+  Nearest nearest(const Vec3& p, double squared_limit, const Accept& accept) const;
+  Nearest nearest(const Vec3& p) const {
+    return nearest(p, 1e300, [](Index, const Vec3&) { return true; });
+  }
+
+  const std::vector<Node>& nodes() const { return nodes_; }
+  /// Numbers of the triangles in the order of the leaves.
+  const std::vector<Index>& order() const { return order_; }
+  /// Corners of the triangles in the order of the leaves.
+  const std::vector<std::array<Vec3, 3>>& corners() const { return corners_; }
+
+ private:
+  void build(std::vector<Vec3>& centroids, Index begin, Index end);
+
+  std::vector<Node> nodes_;
+  std::vector<Index> order_;
+  std::vector<std::array<Vec3, 3>> corners_;
+};
+
+/// Squared distance from a point to a box, 0 inside.
+inline double squared_box_distance(const Vec3& p, const Vec3& min, const Vec3& max) {
+  return (min - p).cwiseMax(p - max).cwiseMax(0.0).squaredNorm();
+}
+
+template <typename Accept>
+TriangleTree::Nearest TriangleTree::nearest(const Vec3& p, double squared_limit, const Accept& accept) const {
+  Nearest best;
+  best.squared_distance = squared_limit;
+  if (nodes_.empty()) return best;
+  struct Entry {
+    Index node;
+    double squared_distance;
+  };
+  std::array<Entry, 64> stack;  // halving: depth at most 32
+  std::size_t depth = 0;
+  const auto box_distance = [&](Index n) {
+    const Node& node = nodes_[static_cast<std::size_t>(n)];
+    return squared_box_distance(p, node.min, node.max);
+  };
+  stack[depth++] = {0, box_distance(0)};
+  while (depth > 0) {
+    const Entry entry = stack[--depth];
+    if (entry.squared_distance > best.squared_distance) continue;
+    const Node& node = nodes_[static_cast<std::size_t>(entry.node)];
+    if (!node.is_leaf()) {
+      Entry near{entry.node + 1, box_distance(entry.node + 1)}, far{node.right, box_distance(node.right)};
+      if (far.squared_distance < near.squared_distance) std::swap(near, far);
+      stack[depth++] = far;
+      stack[depth++] = near;
+      continue;
+    }
+    for (Index i = node.begin; i < node.end; ++i) {
+      const auto& [a, b, c] = corners_[static_cast<std::size_t>(i)];
+      const Vec3 point = nearest_on_triangle(p, a, b, c);
+      const double d = (point - p).squaredNorm();
+      const Index triangle = order_[static_cast<std::size_t>(i)];
+      if (d > best.squared_distance || (d == best.squared_distance && best.triangle >= 0 && triangle > best.triangle))
+        continue;
+      if (accept(triangle, point)) best = {triangle, d, point};
+    }
+  }
+  return best;
+}
+
+}  // namespace softreel

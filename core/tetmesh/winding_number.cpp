@@ -1,0 +1,78 @@
+#include "core/tetmesh/winding_number.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace softreel {
+namespace {
+
+/// A cluster is far beyond this multiple of its radius (beta of the paper, which recommends 2).
+constexpr double kAccuracy = 2.0;
+
+/// Half the solid angle of a triangle seen from the origin; positive if its front faces away from it.
+double half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  return std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+}
+
+}  // namespace
+
+WindingNumber::WindingNumber(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles)
+    : tree_(points, triangles), dipoles_(tree_.nodes().size()) {
+  std::vector<double> weights(dipoles_.size());
+  for (std::size_t n = dipoles_.size(); n-- > 0;) {  // children come after their parents
+    const TriangleTree::Node& node = tree_.nodes()[n];
+    Vec3 area = Vec3::Zero(), moment = Vec3::Zero();
+    double weight = 0;
+    const auto add = [&](const Vec3& part_area, const Vec3& center, double part_weight) {
+      area += part_area;
+      moment += part_weight * center;
+      weight += part_weight;
+    };
+    if (node.is_leaf()) {
+      for (Index i = node.begin; i < node.end; ++i) {
+        const auto& [a, b, c] = tree_.corners()[static_cast<std::size_t>(i)];
+        const Vec3 normal = 0.5 * (b - a).cross(c - a);
+        add(normal, (a + b + c) / 3.0, normal.norm());
+      }
+    } else {
+      for (const std::size_t child : {n + 1, static_cast<std::size_t>(node.right)})
+        add(dipoles_[child].area, dipoles_[child].center, weights[child]);
+    }
+    const Vec3 center = weight > 0 ? Vec3(moment / weight) : Vec3(0.5 * (node.min + node.max));
+    const double radius = (center - node.min).cwiseMax(node.max - center).norm();
+    dipoles_[n] = {center, area, kAccuracy * kAccuracy * radius * radius};
+    weights[n] = weight;
+  }
+}
+
+double WindingNumber::operator()(const Vec3& p) const {
+  if (dipoles_.empty()) return 0;
+  std::array<Index, 64> stack;  // halving: depth at most 32
+  std::size_t depth = 0;
+  stack[depth++] = 0;
+  double half_angles = 0, far = 0;
+  while (depth > 0) {
+    const auto n = static_cast<std::size_t>(stack[--depth]);
+    const Dipole& dipole = dipoles_[n];
+    const Vec3 r = dipole.center - p;
+    const double squared = r.squaredNorm();
+    if (squared > dipole.squared_reach) {
+      far += dipole.area.dot(r) / (squared * std::sqrt(squared));
+      continue;
+    }
+    const TriangleTree::Node& node = tree_.nodes()[n];
+    if (!node.is_leaf()) {
+      stack[depth++] = node.right;
+      stack[depth++] = static_cast<Index>(n) + 1;
+      continue;
+    }
+    for (Index i = node.begin; i < node.end; ++i) {
+      const auto& [a, b, c] = tree_.corners()[static_cast<std::size_t>(i)];
+      half_angles += half_solid_angle(a - p, b - p, c - p);
+    }
+  }
+  return (2.0 * half_angles + far) / (4.0 * std::numbers::pi);
+}
+
+}  // namespace softreel
