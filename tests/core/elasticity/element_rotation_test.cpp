@@ -169,8 +169,9 @@ TEST(FindRotations, AgreesWithItsScalarTwinInEveryLane) {
       const Quaternion found(q[0][lane], q[1][lane], q[2][lane], q[3][lane]);
       expect_best_rotation(found, given);
       const Quaternion twin = find_rotation(given.A, guesses[lane]);
-      if (given.name.find("near") == std::string::npos)
+      if (given.name.find("near") == std::string::npos) {
         EXPECT_GT(std::abs(found.dot(twin)), 1 - 1e-12) << given.name << "\n" << given.A;
+      }
     }
   }
 }
