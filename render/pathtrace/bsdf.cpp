@@ -6,37 +6,64 @@ namespace softreel {
 
 namespace {
 
-/// Directional albedo at one cosine: the mean of the sampling weight G2 / G1 over an even grid of visible normals.
-Vec2f albedo_at(float cosine, float alpha) {
-  constexpr int kGrid = 24;
+/// Mean of part(h) over the normals h visible from a cosine; part gives two numbers.
+///
+/// GGX has heavy tails, which lie at the rim of the disk that visible normals come from: rings are spaced evenly in
+/// v = (1 - r^2)^(1/4), where they are wide enough for few points: 2 r dr = 4 v^3 dv. Half the circle mirrors the
+/// other.
+template <typename Part>
+Vec2f mean_over_normals(float cosine, float alpha, const Part& part) {
+  constexpr int kRings = 32, kAngles = 24;
   const float mu = std::max(cosine, 1e-4f);
   const Vec3f o(std::sqrt(std::max(0.0f, 1 - mu * mu)), 0, mu);
   Vec2f sum = Vec2f::Zero();
-  for (int a = 0; a < kGrid; ++a)
-    for (int b = 0; b < kGrid; ++b) {
-      const Vec2f u((static_cast<float>(a) + 0.5f) / kGrid, (static_cast<float>(b) + 0.5f) / kGrid);
-      const Vec3f h = sample_visible_normal(o, alpha, u);
-      const float cos_d = o.dot(h);
-      const Vec3f i = 2 * cos_d * h - o;
-      if (i.z() <= 0) continue;
-      const float weight = ggx_shadowing(mu, i.z(), alpha) / ggx_masking(mu, alpha);
-      const float rim = schlick_weight(cos_d);
-      sum += weight * Vec2f(1 - rim, rim);
+  for (int ring = 0; ring < kRings; ++ring) {
+    const float v = (static_cast<float>(ring) + 0.5f) / kRings, v2 = v * v;
+    const float radius = std::sqrt(1 - v2 * v2);
+    for (int k = 0; k < kAngles; ++k) {
+      const float angle = kPi * ((static_cast<float>(k) + 0.5f) / kAngles - 0.5f);
+      const Vec3f h = visible_normal(o, alpha, radius * Vec2f(std::cos(angle), std::sin(angle)));
+      sum += 4 * v2 * v * part(o, h);
     }
-  return sum / (kGrid * kGrid);
+  }
+  return sum / (kRings * kAngles);
+}
+
+/// Sampling weight G2 / G1 of a direction with cosine `cos_i`, which may be on either side.
+float shadowing_weight(const Vec3f& o, float cos_i, float alpha) {
+  return ggx_shadowing(o.z(), std::abs(cos_i), alpha) / ggx_masking(o.z(), alpha);
+}
+
+/// What a reflection returns: of reflectance 1 - (1 - c)^5, and of (1 - c)^5.
+Vec2f reflection_albedo(float cosine, float alpha) {
+  return mean_over_normals(cosine, alpha, [alpha](const Vec3f& o, const Vec3f& h) -> Vec2f {
+    const float cos_d = o.dot(h), cos_i = 2 * cos_d * h.z() - o.z();
+    if (cos_i <= 0) return Vec2f::Zero();
+    const float rim = schlick_weight(cos_d);
+    return shadowing_weight(o, cos_i, alpha) * Vec2f(1 - rim, rim);
+  });
+}
+
+/// What rough glass reflects and lets through.
+Vec2f glass_albedo(float cosine, float alpha, float eta) {
+  return mean_over_normals(cosine, alpha, [alpha, eta](const Vec3f& o, const Vec3f& h) -> Vec2f {
+    const float cos_d = o.dot(h), cos_i = 2 * cos_d * h.z() - o.z();
+    const float fresnel = fresnel_dielectric(cos_d, eta);
+    Vec2f part = Vec2f::Zero();
+    if (cos_i > 0) part.x() = fresnel * shadowing_weight(o, cos_i, alpha);
+    Vec3f t;
+    if (refract(o, h, eta, t) && t.z() < 0) part.y() = (1 - fresnel) * shadowing_weight(o, t.z(), alpha);
+    return part;
+  });
 }
 
 }  // namespace
 
-GgxAlbedo::GgxAlbedo(float alpha) {
+template <typename At>
+void AlbedoTable::fill(const At& albedo_at) {
   for (int k = 0; k <= kIntervals; ++k) {
     const float s = static_cast<float>(k) / kIntervals;
-    if (alpha < kSmoothAlpha) {
-      const float rim = schlick_weight(s * s);
-      knots_[static_cast<std::size_t>(k)] = Vec2f(1 - rim, rim);
-    } else {
-      knots_[static_cast<std::size_t>(k)] = albedo_at(s * s, alpha);
-    }
+    knots_[static_cast<std::size_t>(k)] = albedo_at(s * s);
   }
   // at() is linear in s = sqrt(mu): the mean of 2 mu dmu = 4 s^3 ds by midpoints of a finer grid.
   constexpr int kSteps = 16 * kIntervals;
@@ -48,7 +75,25 @@ GgxAlbedo::GgxAlbedo(float alpha) {
   mean_ = (sum / kSteps).cast<float>();
 }
 
-Vec2f GgxAlbedo::at(float cosine) const {
+AlbedoTable AlbedoTable::of_reflection(float alpha) {
+  AlbedoTable table;
+  if (alpha < kSmoothAlpha)
+    table.fill([](float mu) { return Vec2f(1 - schlick_weight(mu), schlick_weight(mu)); });
+  else
+    table.fill([alpha](float mu) { return reflection_albedo(mu, alpha); });
+  return table;
+}
+
+AlbedoTable AlbedoTable::of_glass(float alpha, float eta) {
+  AlbedoTable table;
+  if (alpha < kSmoothAlpha)
+    table.fill([eta](float mu) { return Vec2f(fresnel_dielectric(mu, eta), 1 - fresnel_dielectric(mu, eta)); });
+  else
+    table.fill([alpha, eta](float mu) { return glass_albedo(mu, alpha, eta); });
+  return table;
+}
+
+Vec2f AlbedoTable::at(float cosine) const {
   const float s = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * kIntervals;
   const int k = std::min(static_cast<int>(s), kIntervals - 1);
   const float t = s - static_cast<float>(k);
@@ -62,8 +107,7 @@ Bsdf::Bsdf(const Appearance& appearance)
       ior_(appearance.ior),
       absorption_(appearance.absorption),
       emission_(appearance.emission),
-      albedo_(appearance.base_color),
-      ggx_albedo_(alpha_) {
+      albedo_(appearance.base_color) {
   const float metal = appearance.metallic;
   glass_ = (1 - metal) * appearance.transmission;
   const float base = (1 - metal) * (1 - appearance.transmission);
@@ -72,9 +116,14 @@ Bsdf::Bsdf(const Appearance& appearance)
   f0_ = metal * appearance.base_color + Vec3f::Constant(base * coat_f0_);
   f90_ = Vec3f::Constant(metal + (coated ? base : 0.0f));
   diffuse_ = base * appearance.base_color;
+  lambertian_ = !coated && metal == 0 && glass_ == 0;
+  if (!lambertian_) ggx_albedo_ = AlbedoTable::of_reflection(alpha_);
+  if (glass_ > 0) {
+    glass_outside_ = AlbedoTable::of_glass(alpha_, ior_);
+    glass_inside_ = AlbedoTable::of_glass(alpha_, 1 / ior_);
+  }
   const Vec2f mean = ggx_albedo_.mean();
   if (coated) coat_scale_ = 1 / (1 - (coat_f0_ * mean.x() + mean.y()));
-  lambertian_ = !coated && metal == 0 && glass_ == 0;
   if (metal > 0) {
     // Kulla and Conty: light that leaves after several reflections, coloured once more by each.
     const float once = mean.x() + mean.y();
@@ -117,7 +166,8 @@ void Bsdf::add_reflection(const Vec3f& o, const Vec3f& i, float share, BsdfValue
   sum.pdf += share * common / (1 + lambda_o);
 }
 
-void Bsdf::add_glass(const Vec3f& o, const Vec3f& i, float eta, float share, BsdfValue& sum) const {
+void Bsdf::add_glass(const Vec3f& o, const Vec3f& i, bool inside, float share, BsdfValue& sum) const {
+  const float eta = inside ? 1 / ior_ : ior_;
   const bool reflected = i.z() > 0;
   Vec3f h = reflected ? Vec3f(o + i) : Vec3f(-(o + eta * i));
   // Indices below 1 (light leaving the glass) turn the generalised half vector to the other side.
@@ -129,11 +179,11 @@ void Bsdf::add_glass(const Vec3f& o, const Vec3f& i, float eta, float share, Bsd
   if (o_h <= 0 || (reflected ? i_h <= 0 : i_h >= 0)) return;
   const float fresnel = fresnel_dielectric(o_h, eta);
   const float visible = visible_normal_density(o, h, alpha_);
-  const float shadowing = ggx_shadowing(o.z(), std::abs(i.z()), alpha_) / ggx_masking(o.z(), alpha_);
+  const float kept = (inside ? glass_inside_ : glass_outside_).at(o.z()).sum();
   const float denominator = i_h + o_h / eta;
   const float pdf =
       reflected ? fresnel * visible / (4 * o_h) : (1 - fresnel) * visible * std::abs(i_h) / (denominator * denominator);
-  sum.value += Vec3f::Constant(glass_ * pdf * shadowing);
+  sum.value += Vec3f::Constant(glass_ * pdf * shadowing_weight(o, i.z(), alpha_) / kept);
   sum.pdf += share * pdf;
 }
 
@@ -151,7 +201,7 @@ BsdfValue Bsdf::evaluate(const Vec3f& o, const Vec3f& i, bool inside) const {
     }
     if (!mirror_ && p.reflection > 0) add_reflection(o, i, p.reflection, sum);
   }
-  if (glass_ > 0 && !mirror_ && i.z() != 0) add_glass(o, i, inside ? 1 / ior_ : ior_, p.glass, sum);
+  if (glass_ > 0 && !mirror_ && i.z() != 0) add_glass(o, i, inside, p.glass, sum);
   return sum;
 }
 

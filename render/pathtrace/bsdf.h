@@ -16,19 +16,26 @@
 
 namespace softreel {
 
-/// Directional albedo of a GGX reflection of one roughness: reflectance F0 gives F0 * base + rim.
-class GgxAlbedo {
+/// Directional albedos of a GGX surface of one roughness, two numbers a cosine.
+class AlbedoTable {
  public:
-  explicit GgxAlbedo(float alpha);
-  /// base(mu), rim(mu) at the cosine mu in (0, 1].
+  /// Reflectance F0 at normal incidence gives F0 * x + y.
+  static AlbedoTable of_reflection(float alpha);
+  /// Shares of light that glass reflects and lets through; eta: index of the far side over that of the near side.
+  static AlbedoTable of_glass(float alpha, float eta);
+
+  /// At the cosine mu in [0, 1].
   Vec2f at(float cosine) const;
-  /// Their means, weighted by 2 mu.
+  /// Mean, weighted by 2 mu.
   Vec2f mean() const { return mean_; }
 
  private:
-  static constexpr int kIntervals = 64;
+  template <typename At>
+  void fill(const At& albedo_at);
+
+  static constexpr int kIntervals = 32;
   std::array<Vec2f, kIntervals + 1> knots_;  ///< at mu = (k / kIntervals)^2: dense where E bends, at grazing angles
-  Vec2f mean_;
+  Vec2f mean_ = Vec2f::Zero();
 };
 
 /// f cos_i and the density of sample() for the same pair.
@@ -71,7 +78,7 @@ class Bsdf {
   Vec3f reflectance(float cosine) const { return f0_ + (f90_ - f0_) * schlick_weight(cosine); }
   Vec3f cosine_lobe(float cos_o, float cos_i) const;
   void add_reflection(const Vec3f& o, const Vec3f& i, float share, BsdfValue& sum) const;
-  void add_glass(const Vec3f& o, const Vec3f& i, float eta, float share, BsdfValue& sum) const;
+  void add_glass(const Vec3f& o, const Vec3f& i, bool inside, float share, BsdfValue& sum) const;
   bool sample_mirror_glass(const Vec3f& o, float u, float eta, BsdfSample& sample) const;
   Vec3f sample_rough_glass(const Vec3f& o, float u_side, const Vec2f& u, float eta) const;
 
@@ -87,7 +94,8 @@ class Bsdf {
   float coat_scale_ = 1;                ///< of the diffuse lobe: 1 / (1 - mean coat albedo)
   Vec3f metal_return_ = Vec3f::Zero();  ///< of multiple scattering among facets, with weight
   Vec3f absorption_, emission_, albedo_;
-  GgxAlbedo ggx_albedo_;
+  AlbedoTable ggx_albedo_;                    ///< filled unless lambertian_
+  AlbedoTable glass_outside_, glass_inside_;  ///< filled for glass
 };
 
 }  // namespace softreel

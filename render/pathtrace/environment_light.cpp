@@ -35,17 +35,19 @@ int find_interval(std::span<const float> shares, float u, float& place) {
   return static_cast<int>(k);
 }
 
-/// Mean luminance of the 3 x 3 texels around one: what bilinear interpolation can show within it, never 0 where that is
-/// not.
-double neighbourhood(const EnvironmentImage& image, int column, int row) {
+/// Mean luminance over one texel of the bilinear interpolation between texel centres: of the texel and its neighbours
+/// in the shares 1, 6, 1 of 8 each way. 0 only where the texel is black.
+double texel_mean(const EnvironmentImage& image, int column, int row) {
+  constexpr double kShares[] = {0.125, 0.75, 0.125};
   double sum = 0;
-  for (int r = std::max(0, row - 1); r <= std::min(image.height - 1, row + 1); ++r)
-    for (int c = column - 1; c <= column + 1; ++c) {
-      const int wrapped = (c + image.width) % image.width;
-      sum += std::max(0.0f, luminance(image.pixels[static_cast<std::size_t>(r) * static_cast<std::size_t>(image.width) +
-                                                   static_cast<std::size_t>(wrapped)]));
+  for (int dr = -1; dr <= 1; ++dr)
+    for (int dc = -1; dc <= 1; ++dc) {
+      const auto r = static_cast<std::size_t>(std::clamp(row + dr, 0, image.height - 1));
+      const auto c = static_cast<std::size_t>((column + dc + image.width) % image.width);
+      const Vec3f& pixel = image.pixels[r * static_cast<std::size_t>(image.width) + c];
+      sum += kShares[dr + 1] * kShares[dc + 1] * static_cast<double>(luminance(pixel));
     }
-  return sum / 9;
+  return sum;
 }
 
 }  // namespace
@@ -62,7 +64,7 @@ EnvironmentLight::EnvironmentLight(const Environment& environment) : environment
   for (std::size_t row = 0; row < h; ++row) {
     const double sine = std::sin(std::numbers::pi * (static_cast<double>(row) + 0.5) / static_cast<double>(h));
     for (std::size_t c = 0; c < w; ++c)
-      weights[c] = sine * neighbourhood(image, static_cast<int>(c), static_cast<int>(row));
+      weights[c] = sine * texel_mean(image, static_cast<int>(c), static_cast<int>(row));
     row_weights[row] = cumulate(weights, std::span(columns_).subspan(row * (w + 1), w + 1));
   }
   const double sum = cumulate(row_weights, rows_);

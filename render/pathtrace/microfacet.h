@@ -44,6 +44,9 @@ inline float visible_normal_density(const Vec3f& o, const Vec3f& h, float alpha)
   return ggx_masking(o.z(), alpha) * std::max(0.0f, o.dot(h)) * ggx_distribution(h.z(), alpha) / o.z();
 }
 
+/// The facet normal seen from o (o.z > 0) at a point of the unit disk: even points give visible normals.
+Vec3f visible_normal(const Vec3f& o, float alpha, const Vec2f& disk);
+
 /// A facet normal seen from o (o.z > 0), with that density.
 Vec3f sample_visible_normal(const Vec3f& o, float alpha, const Vec2f& u);
 

@@ -1,0 +1,106 @@
+#include "render/image/image_io.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+
+namespace softreel {
+namespace {
+
+std::string written(const std::string& name, const std::vector<std::uint8_t>& bytes) {
+  const std::string path = (std::filesystem::path(testing::TempDir()) / name).string();
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return path;
+}
+
+DisplayImage some_picture() {
+  DisplayImage image{5, 3, {}};
+  for (int k = 0; k < 45; ++k) image.pixels.push_back(static_cast<std::uint8_t>(k * 37));
+  return image;
+}
+
+Image some_channels() {
+  Image image{4, 3, {}};
+  for (const char* name : {"R", "G", "B", "albedo.R", "depth.Z"}) {
+    Channel channel{name, {}};
+    for (int k = 0; k < 12; ++k)
+      channel.pixels.push_back(static_cast<float>(k) * 0.37f - std::exp(static_cast<float>(k)));
+    image.channels.push_back(channel);
+  }
+  image.channels[4].pixels[3] = std::numeric_limits<float>::infinity();
+  return image;
+}
+
+/// A Radiance file of one row, flat RGBE pixels.
+std::vector<std::uint8_t> tiny_hdr() {
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
+  std::vector<std::uint8_t> bytes(header.begin(), header.end());
+  for (const int byte : {128, 64, 32, 129, 128, 128, 128, 131}) bytes.push_back(static_cast<std::uint8_t>(byte));
+  return bytes;
+}
+
+TEST(Png, ReadsBackWhatItWrote) {
+  const DisplayImage image = some_picture();
+  const DisplayImage back = read_png(written("softreel_io.png", encode_png(image)));
+  EXPECT_EQ(back.width, 5);
+  EXPECT_EQ(back.height, 3);
+  EXPECT_EQ(back.pixels, image.pixels);
+}
+
+TEST(Exr, ReadsBackEveryChannelBitForBit) {
+  const Image image = some_channels();
+  const Image back = read_exr(written("softreel_io.exr", encode_exr(image)));
+  ASSERT_EQ(back.channels.size(), image.channels.size());
+  EXPECT_EQ(back.width, 4);
+  EXPECT_EQ(back.height, 3);
+  for (const Channel& channel : image.channels) {
+    ASSERT_NE(back.find(channel.name), nullptr) << channel.name;
+    EXPECT_EQ(back.find(channel.name)->pixels, channel.pixels);
+  }
+}
+
+TEST(Encoders, GiveTheSameBytesForTheSamePixels) {
+  EXPECT_EQ(encode_png(some_picture()), encode_png(some_picture()));
+  EXPECT_EQ(encode_exr(some_channels()), encode_exr(some_channels()));
+}
+
+TEST(ReadEnvironment, DecodesEachFormat) {
+  const EnvironmentImage hdr = read_environment(written("softreel_io.hdr", tiny_hdr()));
+  ASSERT_EQ(hdr.pixels.size(), 2u);
+  EXPECT_TRUE(hdr.pixels[0].isApprox(Vec3f(1, 0.5f, 0.25f), 1e-5f));
+  EXPECT_TRUE(hdr.pixels[1].isApprox(Vec3f(4, 4, 4), 1e-5f));
+  const EnvironmentImage png = read_environment(written("softreel_white.PNG", encode_png({1, 1, {255, 188, 0}})));
+  EXPECT_NEAR(png.pixels[0].x(), 1, 1e-6);
+  EXPECT_NEAR(png.pixels[0].y(), 0.5, 3e-3);
+  const Image one{1, 1, {{"R", {7.0f}}, {"G", {8.0f}}, {"B", {9.0f}}}};
+  EXPECT_EQ(read_environment(written("softreel_one.exr", encode_exr(one))).pixels[0], Vec3f(7, 8, 9));
+}
+
+TEST(ReadEnvironment, RefusesWhatIsNoRadiance) {
+  const Image negative{1, 1, {{"R", {-1.0f}}, {"G", {0.0f}}, {"B", {0.0f}}}};
+  EXPECT_THROW(read_environment(written("softreel_negative.exr", encode_exr(negative))), Error);
+  EXPECT_THROW(read_environment(written("softreel_unknown.tga", {1, 2, 3})), Error);
+}
+
+TEST(Readers, NameTheFileTheyCannotRead) {
+  for (const char* ending : {"exr", "hdr", "png", "jpg"}) {
+    const std::string path = written(std::string("softreel_broken.") + ending, {'n', 'o', 'i', 's', 'e'});
+    try {
+      read_environment(path);
+      FAIL() << ending;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::Input);
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("Accepted: "), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softreel

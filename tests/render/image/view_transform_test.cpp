@@ -1,0 +1,46 @@
+#include "render/image/view_transform.h"
+
+#include <gtest/gtest.h>
+
+namespace softreel {
+namespace {
+
+TEST(Srgb, DecodesWhatItEncodes) {
+  for (int k = 0; k <= 255; ++k) {
+    const float encoded = static_cast<float>(k) / 255;
+    EXPECT_NEAR(srgb_encode(srgb_decode(encoded)), encoded, 1e-5);
+  }
+  EXPECT_NEAR(srgb_encode(0.5f), 0.735357, 1e-5) << "IEC 61966-2-1";
+}
+
+TEST(ApplyView, StandardClipsAndFilmicDoesNot) {
+  EXPECT_EQ(apply_view(ViewTransform::Standard, Vec3f(2, 0.5f, -1)), Vec3f(1, 0.5f, 0));
+  float before = 0;
+  for (float x = 0.05f; x < 100; x *= 1.3f) {
+    const float now = apply_view(ViewTransform::Filmic, Vec3f(x, 0.5f * x, 0.1f * x)).x();
+    EXPECT_GT(now, before) << "strictly rising at " << x;
+    EXPECT_LT(now, 1);
+    before = now;
+  }
+}
+
+TEST(ApplyView, FilmicIsContinuousAndSmoothAtItsKnee) {
+  const auto at = [](float x) { return apply_view(ViewTransform::Filmic, Vec3f::Constant(x)).x(); };
+  EXPECT_NEAR(at(0.76f + 1e-4f) - at(0.76f - 1e-4f), 2e-4, 2e-6);
+}
+
+TEST(ApplyView, FilmicKeepsTheOrderOfChannelsAndTurnsBrightLightWhite) {
+  const Vec3f bright = apply_view(ViewTransform::Filmic, Vec3f(500, 50, 20));
+  EXPECT_GT(bright.x(), bright.y());
+  EXPECT_GT(bright.y(), bright.z());
+  EXPECT_GT(bright.z(), 0.9f);
+}
+
+TEST(ToDisplay, ExposureCountsInStops) {
+  const Image image{1, 1, {{"R", {0.1f}}, {"G", {0.2f}}, {"B", {0.4f}}}};
+  const Image doubled{1, 1, {{"R", {0.2f}}, {"G", {0.4f}}, {"B", {0.8f}}}};
+  EXPECT_EQ(to_display(image, ViewTransform::Filmic, 1).pixels, to_display(doubled, ViewTransform::Filmic, 0).pixels);
+}
+
+}  // namespace
+}  // namespace softreel
