@@ -135,7 +135,7 @@ Sculpture make_colt() {
   s.bounds.add({-0.26, -0.04, -0.60});
   s.bounds.add({0.26, 1.31, 0.70});
   s.cell = 0.0102;
-  s.lens = {{0, 0.98, 0.48}, 0.30, 0.35};
+  s.lenses = {{{0, 0.98, 0.48}, 0.30, 0.35}, {{0.085, 1.0, 0.46}, 0.09, 0.5}, {{-0.085, 1.0, 0.46}, 0.09, 0.5}};
   s.parts = {{"hooves_front", [](const Vec3& p) { return p.y() < 0.06 && p.z() > 0; }},
              {"hooves_hind", [](const Vec3& p) { return p.y() < 0.06 && p.z() < 0; }},
              {"legs", [](const Vec3& p) { return p.y() < 0.44 && std::abs(p.z()) < 0.37; }},

@@ -19,10 +19,16 @@ class Creature {
   double head(const Vec3& p) const;
   double tail(const Vec3& p) const { return tail_(p); }
   double arms(const Vec3& p) const { return std::min(left_arm(p), right_arm(p)); }
+  /// In the scene; side: 1 for the left eye, -1 for the right one.
+  static Vec3 eye_center(int side) {
+    const Vec3 q(side * kEye.x(), kEye.y(), kEye.z());
+    return kHeadScale * (kHeadTurn * (q - kNeck)) + kNeck;
+  }
   static double eye(const Vec3& p) { return sphere(mirrored(to_head(p)), kEye, kEyeRadius); }
-  static Vec3 to_head(const Vec3& p) { return turned(0, -6, 6).transpose() * (p - kNeck) / kHeadScale + kNeck; }
+  static Vec3 to_head(const Vec3& p) { return kHeadTurn.transpose() * (p - kNeck) / kHeadScale + kNeck; }
 
  private:
+  static inline const Mat3 kHeadTurn = turned(0, -6, 6);
   static inline const Vec3 kNeck{0, 0.60, 0.02}, kEye{0.098, 0.795, 0.125};
   static constexpr double kEyeRadius = 0.074, kHeadScale = 1.15;
 
@@ -167,7 +173,8 @@ Sculpture make_creature() {
   s.bounds.add({-0.56, -0.04, -0.53});
   s.bounds.add({0.58, 1.13, 0.42});
   s.cell = 0.0112;
-  s.lens = {{0.0, 0.80, 0.18}, 0.36, 0.5};
+  s.lenses = {
+      {{0.0, 0.80, 0.18}, 0.36, 0.45}, {Creature::eye_center(1), 0.15, 0.45}, {Creature::eye_center(-1), 0.15, 0.45}};
   s.parts = {{"feet", [](const Vec3& p) { return p.y() < 0.05; }},
              {"knees", [](const Vec3& p) { return p.y() > 0.10 && p.y() < 0.20 && p.z() > -0.12; }},
              {"arms", [creature](const Vec3& p) { return std::abs(p.x()) > 0.17 && creature->arms(p) < 0.01; }},

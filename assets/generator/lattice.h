@@ -1,4 +1,4 @@
-/// Signed distances of a sculpture at the nodes of a lattice of cubes, drawn together by its lens.
+/// Signed distances of a sculpture at the nodes of a lattice of cubes, drawn together by its lenses.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class Lattice {
            static_cast<std::size_t>(node[0]);
   }
   double value(const std::array<int, 3>& node) const { return values_[index(node)]; }
-  /// Where a node lies, seen through the sculpture's lens.
+  /// Where a node lies, seen through the sculpture's lenses.
   Vec3 point(const std::array<int, 3>& node) const;
 
   /// Calls visit(cell) for each cell, named by its lowest node, in order of memory.
@@ -38,7 +38,7 @@ class Lattice {
 
   Vec3 origin_;
   double cell_;
-  Lens lens_;
+  std::vector<Lens> lenses_;
   std::array<int, 3> nodes_{};
   std::vector<double> values_;
 };

@@ -100,7 +100,7 @@ Sculpture make_octopus() {
   s.bounds.add({-0.72, -0.04, -0.72});
   s.bounds.add({0.72, 1.02, 0.72});
   s.cell = 0.0135;
-  s.lens = {{0, 0.52, 0.24}, 0.36, 0.5};
+  s.lenses = {{{0, 0.52, 0.24}, 0.36, 0.5}, {{0.125, 0.57, 0.22}, 0.125, 0.45}, {{-0.125, 0.57, 0.22}, 0.125, 0.45}};
   s.parts = {{"soles", [](const Vec3& p) { return p.y() < 0.03; }},
              {"arms", [octopus](const Vec3& p) { return p.y() < 0.33 && octopus->arms(p) < 0.005; }},
              {"tips", [](const Vec3& p) { return p.y() < 0.33 && std::hypot(p.x(), p.z()) > 0.42; }},

@@ -28,7 +28,7 @@ struct Sculpture {
   std::function<double(const Vec3&)> distance;  ///< m, negative inside
   Bounds bounds;                                ///< holds the solid with a few cells to spare
   double cell = 0.01;                           ///< m, edge of the sampling lattice
-  Lens lens;
+  std::vector<Lens> lenses;                     ///< applied one after the other
   std::vector<Part> parts;
 };
 
