@@ -17,6 +17,9 @@ constexpr std::int64_t kGrain = 512;
 constexpr double kInside = -1e-12;
 /// Weights beyond this would magnify the deformation: such points go to the boundary (embedding.h).
 constexpr double kMaxWeight = 2.0;
+/// How many element sizes farther than the nearest face one that looks the point's way may be: across a gap of less
+/// than an element, not across the body.
+constexpr double kFacingReach = 2.0;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -133,12 +136,14 @@ Boundary make_boundary(const TetMesh& mesh) {
   return {std::move(faces), std::move(normals), TriangleTree(mesh.nodes, triangles)};
 }
 
-/// The nearest point of the boundary where it looks the point's way; where it does nowhere (a spike, a wrong normal),
-/// the nearest point of all.
-TriangleTree::Nearest nearest_facing(const Boundary& boundary, const Vec3& p, const Vec3& normal) {
-  const auto facing = boundary.tree.nearest(
-      p, 1e300, [&](Index face, const Vec3& /*point*/) { return boundary.normals[at(face)].dot(normal) > 0; });
-  return facing.triangle >= 0 ? facing : boundary.tree.nearest(p);
+/// The nearest point of the boundary where it looks the point's way, but not more than `reach` farther than the nearest
+/// of all, which serves where none looks that way (a spike, a wrong normal).
+TriangleTree::Nearest nearest_facing(const Boundary& boundary, const Vec3& p, const Vec3& normal, double reach) {
+  const TriangleTree::Nearest any = boundary.tree.nearest(p);
+  const double limit = std::sqrt(any.squared_distance) + reach;
+  const TriangleTree::Nearest facing = boundary.tree.nearest(
+      p, limit * limit, [&](Index face, const Vec3& /*point*/) { return boundary.normals[at(face)].dot(normal) > 0; });
+  return facing.triangle >= 0 ? facing : any;
 }
 
 bool is_bounded(const Weights& w) {
@@ -152,13 +157,15 @@ class Embedder {
       : points_(points),
         normals_(normals),
         mesh_(mesh),
-        grid_(points, mesh.nodes.front(), cell_size(mesh)),
+        cell_(cell_size(mesh)),
+        grid_(points, mesh.nodes.front(), cell_),
         candidates_(elements_of_cells(mesh, grid_)),
         boundary_(make_boundary(mesh)) {}
 
   void embed(std::size_t point, Index& element, Weights& weights) const {
     if (find_inside(point, element, weights)) return;
-    const TriangleTree::Nearest nearest = nearest_facing(boundary_, points_[point], normals_[point]);
+    const TriangleTree::Nearest nearest =
+        nearest_facing(boundary_, points_[point], normals_[point], kFacingReach * cell_);
     element = boundary_.faces[at(nearest.triangle)].element;
     weights = barycentric(corners_of(mesh_, element), points_[point]);
     if (!is_bounded(weights)) weights = barycentric(corners_of(mesh_, element), nearest.point);
@@ -188,6 +195,7 @@ class Embedder {
   const std::vector<Vec3>& points_;
   const std::vector<Vec3>& normals_;
   const TetMesh& mesh_;
+  double cell_;
   PointGrid grid_;
   CellElements candidates_;
   Boundary boundary_;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/base/error.h"
 #include "core/mesh/surface_mesh.h"
+#include "core/tetmesh/row_crossings.h"
 #include "core/tetmesh/winding_number.h"
 
 #if SOFTREEL_WITH_OPENVDB
@@ -22,6 +24,9 @@ constexpr double kBandVoxels = 2.0;
 /// What OpenVDB is asked for: at 2 and below it leaves out its widening, and voxels within 2 of the surface are
 /// missing.
 constexpr float kMeasuredVoxels = 2.5F;
+
+/// In a hole the distance is this many voxels a unit of winding number: steep, so that it rules in the hole only.
+constexpr double kHoleSlope = 8.0 * kBandVoxels;
 
 constexpr std::int64_t kGrain = 256;
 
@@ -106,36 +111,43 @@ bool is_closed(const std::vector<Vec3>& positions, const std::vector<Triangle>& 
   return std::all_of(balance.begin(), balance.end(), [](std::int32_t b) { return b == 0; });
 }
 
-/// Gives nodes their sign. Near the surface |winding| is 1 or 0 and the distance stands; in the holes of an open
-/// surface it passes 1/2 smoothly, and the distance shrinks with it, so that the sign still changes at a zero.
-void sign_nodes(std::vector<KnownNode>& nodes, std::size_t begin, const WindingNumber& winding,
-                const LatticeFrame& frame, const Threads& threads) {
+/// Signs from the exact crossings of a closed surface; the inside beyond the band is appended.
+void sign_closed(std::vector<KnownNode>& nodes, LatticeNodeSet& known, const RowCrossings& crossings) {
+  for (KnownNode& node : nodes)
+    if (crossings.winding(node.node) != 0) node.distance = -node.distance;
+  crossings.visit_inside([&](const LatticeNode& node) {
+    if (known.insert(node)) nodes.push_back({node, -kBandVoxels, -1});
+  });
+}
+
+/// Signs from the winding numbers of an open surface. Near the surface |winding| is 1 or 0 and the distance stands; in
+/// the holes it passes 1/2 smoothly, and the distance shrinks with it, so that the sign still changes at a zero.
+void sign_open(std::vector<KnownNode>& nodes, std::size_t begin, const WindingNumber& winding,
+               const LatticeFrame& frame, const Threads& threads) {
   threads.for_chunks(static_cast<std::int64_t>(nodes.size() - begin), kGrain, [&](std::int64_t from, std::int64_t to) {
     for (auto i = begin + static_cast<std::size_t>(from); i < begin + static_cast<std::size_t>(to); ++i) {
       const double beyond = std::abs(winding(lattice_position(frame, nodes[i].node))) - 0.5;
-      const double limit = 2.0 * kBandVoxels * std::abs(beyond);
-      nodes[i].distance = std::min({nodes[i].distance, kBandVoxels, limit});
+      const double limit = kHoleSlope * std::abs(beyond);
+      nodes[i].distance = std::min(nodes[i].distance, limit);
       if (beyond > 0) nodes[i].distance = -nodes[i].distance;
     }
   });
 }
 
-/// Walks from the inside nodes of the band to all inside nodes and appends what it meets, in waves, so that the order
-/// does not depend on threads. Where the surface is closed the sign cannot change beyond the band; else it is measured
-/// at every step.
-void flood_inside(std::vector<KnownNode>& nodes, LatticeNodeSet& known, bool closed, const WindingNumber& winding,
-                  const LatticeFrame& frame, const Threads& threads) {
-  std::size_t begin = 0;
-  while (begin < nodes.size()) {
+/// Appends what is missing of the neighbours of inside nodes, as outside; in waves, so that the order does not depend
+/// on threads. Round an open surface signs are measured at every step, and the walk goes on through the inside.
+void add_neighbors(std::vector<KnownNode>& nodes, LatticeNodeSet& known,
+                   const std::function<void(std::size_t)>& sign_from) {
+  for (std::size_t begin = 0; begin < nodes.size();) {
     const std::size_t end = nodes.size();
     for (std::size_t i = begin; i < end; ++i) {
       if (!(nodes[i].distance < 0)) continue;
-      for (std::size_t k = 0; k < kNeighbors; ++k) {
-        const LatticeNode neighbor = lattice_neighbor(nodes[i].node, k);
-        if (known.insert(neighbor)) nodes.push_back({neighbor, closed ? -kBandVoxels : kBandVoxels, -1});
-      }
+      const LatticeNode node = nodes[i].node;
+      for (std::size_t k = 0; k < kNeighbors; ++k)
+        if (const LatticeNode neighbor = lattice_neighbor(node, k); known.insert(neighbor))
+          nodes.push_back({neighbor, kBandVoxels, -1});
     }
-    if (!closed) sign_nodes(nodes, end, winding, frame, threads);
+    sign_from(end);
     begin = end;
   }
 }
@@ -144,13 +156,18 @@ void flood_inside(std::vector<KnownNode>& nodes, LatticeNodeSet& known, bool clo
 
 SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                  const LatticeFrame& frame, const Threads& threads) {
-  const WindingNumber winding(positions, triangles);
   std::vector<KnownNode> nodes = narrow_band(positions, triangles, frame, threads);
-  sign_nodes(nodes, 0, winding, frame, threads);
   SurfaceDistance result;
   LatticeNodeSet& known = result.lattice.nodes;
   for (const KnownNode& node : nodes) known.insert(node.node);
-  flood_inside(nodes, known, is_closed(positions, triangles), winding, frame, threads);
+  if (is_closed(positions, triangles)) {
+    sign_closed(nodes, known, RowCrossings(positions, triangles, frame));
+    add_neighbors(nodes, known, [](std::size_t) {});
+  } else {
+    const WindingNumber winding(positions, triangles);
+    sign_open(nodes, 0, winding, frame, threads);
+    add_neighbors(nodes, known, [&](std::size_t begin) { sign_open(nodes, begin, winding, frame, threads); });
+  }
   known.number_nodes();
   result.lattice.frame = frame;
   result.lattice.values.resize(nodes.size());

@@ -49,16 +49,15 @@ void visit_equal_faces(const TetMesh& mesh, const Visit& visit) {
   std::vector<Face> faces(4 * mesh.tets.size());
   visit_faces(mesh,
               [&](Index smallest, const Face& face) { faces[static_cast<std::size_t>(next[at(smallest)]++)] = face; });
-  const Face* begin = faces.data();
+  Face* begin = faces.data();
   for (std::size_t node = 0; node < mesh.nodes.size(); ++node) {
-    Face* const bucket = faces.data() + (begin - faces.data());
     Face* const bucket_end = faces.data() + next[node];
-    std::sort(bucket, bucket_end, [](const Face& a, const Face& b) {
+    std::sort(begin, bucket_end, [](const Face& a, const Face& b) {
       if (a.middle != b.middle) return a.middle < b.middle;
       return a.largest != b.largest ? a.largest < b.largest : a.number < b.number;
     });
     while (begin < bucket_end) {
-      const Face* end = begin + 1;
+      Face* end = begin + 1;
       while (end < bucket_end && end->middle == begin->middle && end->largest == begin->largest) ++end;
       visit(begin, end);
       begin = end;
