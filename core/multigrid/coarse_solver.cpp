@@ -94,7 +94,7 @@ bool CoarseSolver::factor(const BlockMatrix<Scalar>& matrix, double noise) {
       for (Index r = 0; r < 3; ++r)
         for (Index c = 0; c < 3; ++c)
           if (3 * q + c <= 3 * p + r)
-            row(static_cast<std::size_t>(3 * p + r))[3 * q + c] = static_cast<double>(matrix.block(b)[3 * r + c]);
+            row(static_cast<std::size_t>(3 * p + r))[3 * q + c] = static_cast<double>(matrix.block(b)[3 * c + r]);
     }
   bool sound = true;
   for (std::size_t i = 0; i < first_.size(); ++i) sound = factor_row(i, noise) && sound;

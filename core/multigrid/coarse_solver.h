@@ -16,9 +16,9 @@ class CoarseSolver {
  public:
   explicit CoarseSolver(const BlockPattern& pattern);
 
-  /// Factors the values of a matrix with the constructor's pattern, symmetric and positive semidefinite. A pivot that
-  /// cancellation has brought below `noise` times its diagonal entry marks an unknown that depends on those before it:
-  /// it is left at 0. False if the matrix is not positive semidefinite or not finite.
+  /// Factors a matrix with the constructor's pattern, symmetric, positive semidefinite, blocks column-major. A pivot
+  /// that cancellation has brought below `noise` times its diagonal entry marks an unknown that depends on those before
+  /// it: it is left at 0. False if the matrix is not positive semidefinite or not finite.
   template <typename Scalar>
   bool factor(const BlockMatrix<Scalar>& matrix, double noise);
 

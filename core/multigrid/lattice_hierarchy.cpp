@@ -105,7 +105,7 @@ std::vector<Index> inverted(const std::vector<Index>& order) {
   return inverse;
 }
 
-/// The pattern with rows and columns renumbered; source[b] is the old position of new block b.
+/// The pattern with rows and columns renumbered; source[b] is the old position of the mirror of new block b.
 BlockPattern permuted(const BlockPattern& pattern, const std::vector<Index>& order, std::vector<std::int64_t>& source) {
   const std::vector<Index> number = inverted(order);
   BlockPattern result;
@@ -120,7 +120,7 @@ BlockPattern permuted(const BlockPattern& pattern, const std::vector<Index>& ord
     std::sort(row.begin(), row.end());
     for (const auto& [column, block] : row) {
       result.column_indices.push_back(column);
-      source.push_back(block);
+      source.push_back(pattern.find(pattern.column_indices[static_cast<std::size_t>(block)], old_row));
     }
     result.row_offsets.push_back(result.blocks());
   }

@@ -23,9 +23,11 @@ struct LatticeLevel {
 };
 
 struct LatticeHierarchy {
-  std::vector<LatticeLevel> levels;         ///< levels[0] is the mesh; never empty
-  std::vector<Index> mesh_nodes;            ///< mesh node of each node of level 0
-  std::vector<std::int64_t> source_blocks;  ///< block of the mesh's pattern behind each block of level 0
+  std::vector<LatticeLevel> levels;  ///< levels[0] is the mesh; never empty
+  std::vector<Index> mesh_nodes;     ///< mesh node of each node of level 0
+  /// Block of the mesh's pattern behind each block (i, j) of level 0, mirrored: that of K_ji. Copied as it is, a level
+  /// holds its blocks column-major, as column_major_row_product wants them; R K R^T keeps that.
+  std::vector<std::int64_t> source_blocks;
 };
 
 /// Lattices of spacing 2h, 4h, ... with the mesh's origin, until a level has at most params.bottom_nodes nodes or the

@@ -5,6 +5,42 @@
 #include "core/base/check.h"
 
 namespace softreel {
+namespace {
+
+/// The rows of a level by plain pointers, for the inner loops.
+template <typename Scalar>
+struct Rows {
+  Rows(const LatticeLevel& level, const BlockMatrix<Scalar>& matrix, const AlignedVector<Scalar>& inverses)
+      : values(matrix.values.data()),
+        columns(level.pattern.column_indices.data()),
+        offsets(level.pattern.row_offsets.data()),
+        diagonal(level.diagonal.data()),
+        inverse(inverses.data()) {}
+
+  [[gnu::always_inline]] NodeLanes<Scalar> left_sum(std::int64_t i, const Scalar* x) const {
+    return column_major_row_product(values, columns, offsets[i], diagonal[i], x);
+  }
+  [[gnu::always_inline]] NodeLanes<Scalar> right_sum(std::int64_t i, const Scalar* x) const {
+    return column_major_row_product(values, columns, diagonal[i] + 1, offsets[i + 1], x);
+  }
+  [[gnu::always_inline]] NodeLanes<Scalar> full_sum(std::int64_t i, const Scalar* x) const {
+    return column_major_row_product(values, columns, offsets[i], offsets[i + 1], x);
+  }
+  /// The fourth lane of the result is 0 whatever that of rhs.
+  [[gnu::always_inline]] NodeLanes<Scalar> solve_diagonal(std::int64_t i, const NodeLanes<Scalar>& rhs) const {
+    using Column = Eigen::Map<const NodeLanes<Scalar>>;
+    const Scalar* const column = inverse + 12 * i;
+    return Column(column) * rhs[0] + (Column(column + 4) * rhs[1] + Column(column + 8) * rhs[2]);
+  }
+
+  const Scalar* values;
+  const Index* columns;
+  const std::int64_t* offsets;
+  const std::int64_t* diagonal;
+  const Scalar* inverse;
+};
+
+}  // namespace
 
 template <typename Scalar>
 Smoother<Scalar>::Smoother(const LatticeLevel& level, const BlockMatrix<Scalar>& matrix)
@@ -49,47 +85,33 @@ void Smoother<Scalar>::for_color(std::size_t color, const Threads& threads, cons
 }
 
 template <typename Scalar>
-NodeLanes<Scalar> Smoother<Scalar>::left_sum(std::int64_t row, const NodeVector<Scalar>& x) const {
-  return row_product(matrix_, level_.pattern.row_offsets.data()[row], level_.diagonal.data()[row], x.data());
-}
-
-template <typename Scalar>
-NodeLanes<Scalar> Smoother<Scalar>::right_sum(std::int64_t row, const NodeVector<Scalar>& x) const {
-  return row_product(matrix_, level_.diagonal.data()[row] + 1, level_.pattern.row_offsets.data()[row + 1], x.data());
-}
-
-template <typename Scalar>
-NodeLanes<Scalar> Smoother<Scalar>::solve_diagonal(std::int64_t row, const NodeLanes<Scalar>& rhs) const {
-  using Column = Eigen::Map<const NodeLanes<Scalar>>;
-  const Scalar* const inverse = inverses_.data() + 12 * row;
-  return Column(inverse) * rhs[0] + Column(inverse + 4) * rhs[1] + Column(inverse + 8) * rhs[2];
-}
-
-template <typename Scalar>
 void Smoother<Scalar>::forward_from_zero(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
+  const Rows<Scalar> rows(level_, matrix_, inverses_);
   for (std::size_t color = 0; color + 1 < level_.color_offsets.size(); ++color)
     for_color(color, threads, [&](std::int64_t i) {
-      const NodeLanes<Scalar> left = left_sum(i, x);
+      const NodeLanes<Scalar> left = rows.left_sum(i, x.data());
       lanes(left_sums_, i) = left;
-      lanes(x, i) = solve_diagonal(i, lanes(b, i) - left);
+      lanes(x, i) = rows.solve_diagonal(i, lanes(b, i) - left);
     });
 }
 
 template <typename Scalar>
 void Smoother<Scalar>::forward(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
+  const Rows<Scalar> rows(level_, matrix_, inverses_);
   for (std::size_t color = 0; color + 1 < level_.color_offsets.size(); ++color)
     for_color(color, threads, [&](std::int64_t i) {
-      const NodeLanes<Scalar> left = left_sum(i, x);
+      const NodeLanes<Scalar> left = rows.left_sum(i, x.data());
       lanes(left_sums_, i) = left;
-      lanes(x, i) = solve_diagonal(i, lanes(b, i) - left - right_sum(i, x));
+      lanes(x, i) = rows.solve_diagonal(i, lanes(b, i) - left - rows.right_sum(i, x.data()));
     });
 }
 
 template <typename Scalar>
 void Smoother<Scalar>::backward(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
+  const Rows<Scalar> rows(level_, matrix_, inverses_);
   for (std::size_t color = level_.color_offsets.size() - 1; color-- > 0;)
     for_color(color, threads, [&](std::int64_t i) {
-      lanes(x, i) = solve_diagonal(i, lanes(b, i) - lanes(left_sums_, i) - right_sum(i, x));
+      lanes(x, i) = rows.solve_diagonal(i, lanes(b, i) - lanes(left_sums_, i) - rows.right_sum(i, x.data()));
     });
 }
 
@@ -100,8 +122,9 @@ void Smoother<Scalar>::smooth_from_zero(int sweeps, const NodeVector<Scalar>& b,
   forward_from_zero(b, x, threads);
   backward(b, x, threads);
   smooth(sweeps - 1, b, x, threads);
+  const Rows<Scalar> rows(level_, matrix_, inverses_);
   threads.for_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(left_sums_, i) - left_sum(i, x);
+    for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(left_sums_, i) - rows.left_sum(i, x.data());
   });
 }
 
@@ -111,6 +134,15 @@ void Smoother<Scalar>::smooth(int sweeps, const NodeVector<Scalar>& b, NodeVecto
     forward(b, x, threads);
     backward(b, x, threads);
   }
+}
+
+template <typename Scalar>
+void Smoother<Scalar>::find_residual(const NodeVector<Scalar>& b, const NodeVector<Scalar>& x, NodeVector<Scalar>& r,
+                                     const Threads& threads) const {
+  const Rows<Scalar> rows(level_, matrix_, inverses_);
+  threads.for_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(b, i) - rows.full_sum(i, x.data());
+  });
 }
 
 template <typename Scalar>

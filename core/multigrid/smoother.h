@@ -16,7 +16,7 @@ namespace softreel {
 template <typename Scalar>
 class Smoother {
  public:
-  /// Both are kept by reference.
+  /// Both are kept by reference. The blocks are column-major, the values from reserve_values.
   Smoother(const LatticeLevel& level, const BlockMatrix<Scalar>& matrix);
 
   /// Inverts the diagonal blocks; false if one is not positive definite in this precision.
@@ -29,14 +29,15 @@ class Smoother {
   /// `sweeps` symmetric sweeps from x.
   void smooth(int sweeps, const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads);
 
+  /// r = b - A x.
+  void find_residual(const NodeVector<Scalar>& b, const NodeVector<Scalar>& x, NodeVector<Scalar>& r,
+                     const Threads& threads) const;
+
   std::int64_t bytes() const;
 
  private:
   template <typename RowUpdate>
   void for_color(std::size_t color, const Threads& threads, const RowUpdate& update) const;
-  NodeLanes<Scalar> left_sum(std::int64_t row, const NodeVector<Scalar>& x) const;
-  NodeLanes<Scalar> right_sum(std::int64_t row, const NodeVector<Scalar>& x) const;
-  NodeLanes<Scalar> solve_diagonal(std::int64_t row, const NodeLanes<Scalar>& rhs) const;
   void forward_from_zero(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads);
   void forward(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads);
   void backward(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads);

@@ -17,7 +17,7 @@ constexpr double kPivotNoise = 8.0 * std::numeric_limits<Scalar>::epsilon();
 template <typename Scalar>
 Cycle<Scalar>::Level::Level(const LatticeLevel& level_structure, bool last) : structure(level_structure) {
   matrix.pattern = structure.pattern;
-  matrix.values.assign(static_cast<std::size_t>(9 * structure.pattern.blocks()), Scalar{0});
+  reserve_values(matrix);
   const std::size_t lanes_total = 4 * static_cast<std::size_t>(structure.pattern.rows());
   for (NodeVector<Scalar>* vector : {&b, &x, &r, &correction}) vector->assign(lanes_total, Scalar{0});
   if (!last) smoother = std::make_unique<Smoother<Scalar>>(structure, matrix);
@@ -119,7 +119,7 @@ void Cycle<Scalar>::correct_from_next(std::size_t h) {
   if (twice) {
     // The second cycle works on the residual of the first, from zero: its sweeps are the cheap ones.
     std::swap(coarse.x, coarse.correction);
-    residual(coarse.matrix, coarse.b, coarse.correction, coarse.r, threads_);
+    coarse.smoother->find_residual(coarse.b, coarse.correction, coarse.r, threads_);
     std::swap(coarse.b, coarse.r);
     cycle(h + 1);
     threads_.for_chunks(coarse.structure.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {

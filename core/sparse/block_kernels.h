@@ -39,8 +39,8 @@ Eigen::Map<NodeLanes<Scalar>> lanes(NodeVector<Scalar>& vector, std::int64_t nod
 /// Lane c of accumulator r sums K_rc x_c; each row of a block is loaded as four lanes, the fourth being the next row's
 /// first scalar, which meets the zero of x. Only the very last block of the matrix must not be read past its end.
 template <typename Scalar>
-NodeLanes<Scalar> row_product(const BlockMatrix<Scalar>& matrix, std::int64_t begin, std::int64_t end,
-                              const Scalar* x) {
+[[gnu::always_inline]] inline NodeLanes<Scalar> row_product(const BlockMatrix<Scalar>& matrix, std::int64_t begin,
+                                                            std::int64_t end, const Scalar* x) {
   using Row = Eigen::Map<const NodeLanes<Scalar>>;
   const Index* const columns = matrix.pattern.column_indices.data();
   const std::int64_t last = matrix.pattern.blocks() - 1;
@@ -60,6 +60,33 @@ NodeLanes<Scalar> row_product(const BlockMatrix<Scalar>& matrix, std::int64_t be
       product[r] += block[3 * r] * node[0] + block[3 * r + 1] * node[1] + block[3 * r + 2] * node[2];
   }
   return product;
+}
+
+/// The same for blocks stored column-major; the fourth lane of the result is unspecified.
+///
+/// The lanes are those of the result, so nothing is summed across them, which pays for the short half rows of a
+/// smoother. In a symmetric matrix a column-major K_ij is a row-major K_ji. Reads one scalar past the last block: see
+/// reserve_values.
+template <typename Scalar>
+[[gnu::always_inline]] inline NodeLanes<Scalar> column_major_row_product(const Scalar* values, const Index* columns,
+                                                                         std::int64_t begin, std::int64_t end,
+                                                                         const Scalar* x) {
+  using Row = Eigen::Map<const NodeLanes<Scalar>>;
+  NodeLanes<Scalar> sum0 = NodeLanes<Scalar>::Zero(), sum1 = sum0, sum2 = sum0;
+  for (std::int64_t b = begin; b < end; ++b) {
+    const Scalar* const block = values + 9 * b;
+    const Scalar* const node = x + 4 * std::int64_t{columns[b]};
+    sum0 += Row(block) * node[0];
+    sum1 += Row(block + 3) * node[1];
+    sum2 += Row(block + 6) * node[2];
+  }
+  return sum0 + (sum1 + sum2);
+}
+
+/// Room for all values of the pattern, zero, and for the lanes that reach past the last block.
+template <typename Scalar>
+void reserve_values(BlockMatrix<Scalar>& matrix) {
+  matrix.values.assign(static_cast<std::size_t>(9 * matrix.pattern.blocks()) + 3, Scalar{0});
 }
 
 /// y = A x.

@@ -110,7 +110,7 @@ GalerkinGather<Scalar>::GalerkinGather(const BlockPattern& K_pattern, const Weig
 
 template <typename Scalar>
 void GalerkinGather<Scalar>::run(const BlockMatrix<Scalar>& K, BlockMatrix<Scalar>& E, const Threads& threads) const {
-  E.values.resize(static_cast<std::size_t>(9 * E.pattern.blocks()));
+  CHECK(static_cast<std::int64_t>(E.values.size()) >= 9 * E.pattern.blocks());
   const auto count = static_cast<std::int64_t>(targets_.size()) - 1;
   threads.for_chunks(count, kTargetGrain, [&](std::int64_t begin, std::int64_t end) {
     const Term* const terms = terms_.data();

@@ -21,7 +21,8 @@ class GalerkinGather {
   /// K_pattern: symmetric. E_pattern: galerkin_pattern(K_pattern, R, transpose(R)).
   GalerkinGather(const BlockPattern& K_pattern, const WeightMatrix& R_transposed, const BlockPattern& E_pattern);
 
-  /// Fills E.values from K.values; the patterns are those of the constructor. E is exactly symmetric.
+  /// Fills E.values, which must have room, from K.values; the patterns are those of the constructor. E is exactly
+  /// symmetric.
   void run(const BlockMatrix<Scalar>& K, BlockMatrix<Scalar>& E, const Threads& threads) const;
 
   std::int64_t products() const { return static_cast<std::int64_t>(terms_.size()); }

@@ -32,7 +32,7 @@ template <typename Scalar>
 void galerkin_product(const BlockMatrix<Scalar>& K, const WeightMatrix& R, BlockMatrix<Scalar>& E) {
   CHECK(R.columns == K.pattern.rows());
   CHECK(E.pattern.rows() == R.rows());
-  E.values.resize(static_cast<std::size_t>(9 * E.pattern.blocks()));
+  CHECK(static_cast<std::int64_t>(E.values.size()) >= 9 * E.pattern.blocks());
   for (std::size_t i = 0; i < static_cast<std::size_t>(R.rows()); ++i)
     for (std::int64_t e = E.pattern.row_offsets[i]; e < E.pattern.row_offsets[i + 1]; ++e) {
       const auto j = static_cast<std::size_t>(E.pattern.column_indices[static_cast<std::size_t>(e)]);

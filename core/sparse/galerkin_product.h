@@ -6,8 +6,9 @@
 
 namespace softreel {
 
-/// Fills E.values; E.pattern is galerkin_pattern(K.pattern, R, transpose(R)). Every entry E_ij visits R_il, then the
-/// intersection of the sorted sets S^K_l and S^R_j. One thread. Works for any K, symmetric or not.
+/// Fills E.values, which must have room; E.pattern is galerkin_pattern(K.pattern, R, transpose(R)). Every entry E_ij
+/// visits R_il, then the intersection of the sorted sets S^K_l and S^R_j. One thread. Works for any K, symmetric or
+/// not.
 template <typename Scalar>
 void galerkin_product(const BlockMatrix<Scalar>& K, const WeightMatrix& R, BlockMatrix<Scalar>& E);
 

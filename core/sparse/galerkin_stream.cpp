@@ -36,7 +36,8 @@ void GalerkinStream<Scalar>::push(Scalar weight, std::int64_t target) {
 template <typename Scalar>
 void GalerkinStream<Scalar>::run(const BlockMatrix<Scalar>& K, BlockMatrix<Scalar>& E) const {
   using Block = Eigen::Array<Scalar, 8, 1>;
-  E.values.assign(static_cast<std::size_t>(9 * E.pattern.blocks()), Scalar{0});
+  CHECK(static_cast<std::int64_t>(E.values.size()) >= 9 * E.pattern.blocks());
+  std::fill(E.values.begin(), E.values.end(), Scalar{0});
   const Pair* pair = data_.data();
   const Scalar* block = K.values.data();
   const Scalar* next = block;

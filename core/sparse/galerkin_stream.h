@@ -23,7 +23,7 @@ class GalerkinStream {
   /// E_pattern: galerkin_pattern(K_pattern, R, transpose(R)).
   GalerkinStream(const BlockPattern& K_pattern, const WeightMatrix& R_transposed, const BlockPattern& E_pattern);
 
-  /// Fills E.values from K.values; the patterns are those of the constructor.
+  /// Fills E.values, which must have room, from K.values; the patterns are those of the constructor.
   void run(const BlockMatrix<Scalar>& K, BlockMatrix<Scalar>& E) const;
 
   std::int64_t bytes() const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/multigrid/lattice_hierarchy.h"
 #include "core/multigrid/multigrid.h"
+#include "core/sparse/block_kernels.h"
 #include "core/sparse/galerkin_gather.h"
 #include "core/sparse/galerkin_product.h"
 #include "core/sparse/galerkin_stream.h"
@@ -23,12 +25,18 @@ namespace {
 
 using test_support::ElasticSystem;
 
-double median_seconds(int repeats, const std::function<void()>& work) {
+/// Now, s: processor time on one thread, which other jobs of a shared machine disturb least; wall time on several.
+double now(const Threads& threads) {
+  if (threads.count() == 1) return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double median_seconds(const Threads& threads, int repeats, const std::function<void()>& work) {
   std::vector<double> times;
   for (int i = 0; i < repeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = now(threads);
     work();
-    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    times.push_back(now(threads) - start);
   }
   std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
   return times[static_cast<std::size_t>(repeats / 2)];
@@ -44,8 +52,8 @@ void time_solver(const TetMesh& mesh, const ElasticSystem& system, const char* n
   Multigrid multigrid(mesh, {}, system.matrix.pattern, {}, threads);
   std::vector<Vec3> x(mesh.nodes.size());
   SolveReport report;
-  const double update = median_seconds(9, [&] { multigrid.update(system.matrix, system.pinned); });
-  const double solve = median_seconds(9, [&] {
+  const double update = median_seconds(threads, 15, [&] { multigrid.update(system.matrix, system.pinned); });
+  const double solve = median_seconds(threads, 15, [&] {
     std::fill(x.begin(), x.end(), Vec3::Zero());
     report = multigrid.solve(system.matrix, system.load, x, 1e-6, 0, 400);
   });
@@ -59,14 +67,17 @@ void time_products(const TetMesh& mesh, const ElasticSystem& system, const Threa
   if (hierarchy.levels.size() < 2) return;
   const LatticeLevel& fine = hierarchy.levels[0];
   BlockMatrixf K{fine.pattern, {}}, E{hierarchy.levels[1].pattern, {}};
-  for (const std::int64_t source : hierarchy.source_blocks)
-    for (int k = 0; k < 9; ++k) K.values.push_back(static_cast<float>(system.matrix.block(source)[k]));
+  reserve_values(K);
+  reserve_values(E);
+  for (std::size_t b = 0; b < hierarchy.source_blocks.size(); ++b)
+    for (std::size_t k = 0; k < 9; ++k)
+      K.values[9 * b + k] = static_cast<float>(system.matrix.block(hierarchy.source_blocks[b])[k]);
   const GalerkinStream<float> stream(K.pattern, fine.prolongation, E.pattern);
   const GalerkinGather<float> gather(K.pattern, fine.prolongation, E.pattern);
   const double per_block = 1e9 / static_cast<double>(K.pattern.blocks());
-  const double naive_ns = per_block * median_seconds(3, [&] { galerkin_product(K, fine.restriction, E); });
-  const double stream_ns = per_block * median_seconds(15, [&] { stream.run(K, E); });
-  const double gather_ns = per_block * median_seconds(15, [&] { gather.run(K, E, threads); });
+  const double naive_ns = per_block * median_seconds(threads, 3, [&] { galerkin_product(K, fine.restriction, E); });
+  const double stream_ns = per_block * median_seconds(threads, 15, [&] { stream.run(K, E); });
+  const double gather_ns = per_block * median_seconds(threads, 15, [&] { gather.run(K, E, threads); });
   fmt::print("{}\tgalerkin ns/block\t{}\t{:.2f}\t{:.2f}\t{:.2f}\t{:.2f} products/block\n", mesh.tets.size(),
              threads.count(), naive_ns, stream_ns, gather_ns,
              static_cast<double>(gather.products()) / static_cast<double>(K.pattern.blocks()));
