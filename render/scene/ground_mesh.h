@@ -16,6 +16,9 @@ class GroundPattern {
   GroundPattern(const Ground& ground, const Camera& camera);
   /// Whether a point of the ground has checker_color. False everywhere without a pattern.
   bool alternate(const Vec3f& position) const;
+  /// The pattern's horizontal axes, unit.
+  const Vec3f& across() const { return across_; }
+  const Vec3f& along() const { return along_; }
 
  private:
   GroundStyle style_;

@@ -1,0 +1,151 @@
+/// GLSL programs of the preview: one lit surface, one background. OpenGL 3.3.
+#pragma once
+
+namespace softreel {
+
+inline constexpr int kMaxPreviewLamps = 8;
+inline constexpr int kMaxPreviewSuns = 4;
+
+inline constexpr const char* kSurfaceVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform mat4 clip_from_world;
+out vec3 world_position;
+out vec3 world_normal;
+void main() {
+  world_position = position;
+  world_normal = normal;
+  gl_Position = clip_from_world * vec4(position, 1.0);
+}
+)";
+
+/// The environment's gradient; an image is summed up by three colours.
+inline constexpr const char* kEnvironmentFunctions = R"(#version 330 core
+uniform vec3 zenith, horizon, nadir;
+vec3 environment(float height) {
+  return mix(horizon, height > 0.0 ? zenith : nadir, abs(height));
+}
+)";
+
+/// Display values, as apply_view of render/image/view_transform.h.
+inline constexpr const char* kDisplayFunctions = R"(
+uniform float exposure_scale;
+uniform bool filmic;
+vec3 to_srgb(vec3 c) {
+  return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
+}
+vec3 display(vec3 radiance) {
+  vec3 c = max(exposure_scale * radiance, 0.0);
+  float peak = max(c.r, max(c.g, c.b));
+  if (filmic && peak > 0.76) {
+    float compressed = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
+    float whiteness = 1.0 - 1.0 / (0.15 * (peak - compressed) + 1.0);
+    c = mix(c * (compressed / peak), vec3(compressed), whiteness);
+  }
+  return to_srgb(clamp(c, 0.0, 1.0));
+}
+)";
+
+inline constexpr const char* kBackgroundVertexShader = R"(#version 330 core
+uniform vec3 forward, right, up;  // right and up as long as half the window one metre ahead
+out vec3 direction;
+void main() {
+  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  direction = forward + corner.x * right + corner.y * up;
+  gl_Position = vec4(corner, 1.0, 1.0);
+}
+)";
+
+inline constexpr const char* kBackgroundFragmentShader = R"(
+in vec3 direction;
+out vec4 color;
+void main() {
+  color = vec4(display(environment(normalize(direction).y)), 1.0);
+}
+)";
+
+/// Lamps are points with the irradiance of the rectangle's centre, wrapped around by its size; the environment lights
+/// by its gradient in the direction of the normal (diffuse) and of the reflection (gloss). No shadows.
+inline constexpr const char* kSurfaceFragmentShader = R"(
+in vec3 world_position;
+in vec3 world_normal;
+out vec4 color;
+
+uniform vec3 eye;
+uniform vec3 base_color, emission;
+uniform float roughness, metallic, specular, transmission;
+uniform bool is_ground, flat_normals;
+uniform bool upright_ground;          // the pattern follows world axes
+uniform float checker, ground_height, sweep, fade_start, fade_end;
+uniform vec3 checker_color, across, along;
+uniform int lamps, suns;
+uniform vec3 lamp_center[8], lamp_normal[8], lamp_radiance[8];
+uniform float lamp_area[8];
+uniform vec3 sun_towards[4], sun_irradiance[4];
+
+const float kPi = 3.14159265;
+
+vec3 surface_color() {
+  if (!is_ground || checker <= 0.0) return base_color;
+  float x = dot(world_position, across), y = dot(world_position, along);
+  if (!upright_ground && y > sweep) {
+    float radius = 0.5 * sweep, rise = world_position.y - ground_height;
+    y = rise < radius ? sweep + radius * atan(y - sweep, radius - rise) : sweep + radius * 0.5 * kPi + (rise - radius);
+  }
+  return mod(floor(x / checker) + floor(y / checker), 2.0) == 1.0 ? checker_color : base_color;
+}
+
+vec3 reflectance(vec3 f0, float cosine) {
+  return f0 + (max(vec3(1.0 - roughness), f0) - f0) * pow(1.0 - cosine, 5.0);
+}
+
+// GGX highlight times pi, with the visibility of Karis 2013.
+float highlight(vec3 n, vec3 v, vec3 l, float alpha) {
+  vec3 h = normalize(v + l);
+  float nh = max(dot(n, h), 0.0), nv = max(dot(n, v), 1e-3), nl = max(dot(n, l), 1e-3);
+  float a2 = alpha * alpha, t = nh * nh * (a2 - 1.0) + 1.0, k = 0.5 * alpha;
+  return a2 / (t * t) * 0.25 / ((nv * (1.0 - k) + k) * (nl * (1.0 - k) + k));
+}
+
+void main() {
+  vec3 albedo = surface_color();
+  vec3 v = normalize(eye - world_position);
+  vec3 n = normalize(flat_normals ? cross(dFdx(world_position), dFdy(world_position)) : world_normal);
+  if (dot(n, v) < 0.0) n = -n;
+  vec3 f0 = mix(vec3(0.08 * specular), albedo, metallic);
+  vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - 0.6 * transmission);
+  float alpha = max(roughness * roughness, 0.01);
+  vec3 sum = emission;
+
+  for (int k = 0; k < lamps; ++k) {
+    vec3 to = lamp_center[k] - world_position;
+    float squared = dot(to, to);
+    vec3 l = to * inversesqrt(squared);
+    float facing = max(-dot(l, lamp_normal[k]), 0.0);
+    vec3 irradiance = lamp_radiance[k] * (lamp_area[k] * facing / (squared + 0.25 * lamp_area[k]));
+    float widened = min(1.0, alpha + 0.25 * sqrt(lamp_area[k] / squared));
+    float narrow = (alpha * alpha) / (widened * widened);  // the same energy over a wider highlight
+    vec3 gloss = reflectance(f0, max(dot(v, normalize(v + l)), 0.0)) * highlight(n, v, l, widened) * mix(narrow, 1.0, 0.5);
+    sum += irradiance / kPi * max(dot(n, l), 0.0) * (diffuse + gloss);
+  }
+  for (int k = 0; k < suns; ++k) {
+    vec3 l = sun_towards[k];
+    vec3 gloss = reflectance(f0, max(dot(v, normalize(v + l)), 0.0)) * highlight(n, v, l, alpha);
+    sum += sun_irradiance[k] / kPi * max(dot(n, l), 0.0) * (diffuse + gloss);
+  }
+  // Irradiance / pi of a gradient: between its values at the pole and at the horizon, both hemispheres mixed by height.
+  vec3 upper = mix(horizon, zenith, 0.6), lower = mix(horizon, nadir, 0.6);
+  sum += diffuse * mix(lower, upper, 0.5 + 0.5 * n.y);
+  vec3 r = reflect(-v, n);
+  sum += reflectance(f0, max(dot(n, v), 0.0)) * environment(mix(r.y, 0.5 * n.y, roughness));
+  sum = mix(sum, environment(mix(-v.y, r.y, 0.3)), 0.6 * transmission * (1.0 - metallic));
+
+  if (is_ground) {
+    float distance = length(world_position.xz);
+    sum = mix(sum, environment(-v.y), smoothstep(fade_start, fade_end, distance));
+  }
+  color = vec4(display(sum), 1.0);
+}
+)";
+
+}  // namespace softreel
