@@ -16,8 +16,6 @@ class Colt {
   Colt();
   double operator()(const Vec3& p) const;
   double head(const Vec3& p) const;
-  double fore_leg(const Vec3& p) const { return fore_(mirrored(p)); }
-  double hind_leg(const Vec3& p) const { return hind_(mirrored(p)); }
   double tail(const Vec3& p) const { return tail_(p); }
 
  private:
@@ -140,7 +138,7 @@ Sculpture make_colt() {
              {"hooves_hind", [](const Vec3& p) { return p.y() < 0.06 && p.z() < 0; }},
              {"legs", [](const Vec3& p) { return p.y() < 0.44 && std::abs(p.z()) < 0.37; }},
              {"knees",
-              [colt](const Vec3& p) {
+              [](const Vec3& p) {
                 return (p.z() > 0 ? between(0.245, p.y(), 0.355) : between(0.26, p.y(), 0.37)) &&
                        std::abs(p.z()) < 0.37;
               }},

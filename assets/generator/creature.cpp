@@ -17,7 +17,6 @@ class Creature {
   double operator()(const Vec3& p) const;
 
   double head(const Vec3& p) const;
-  double tail(const Vec3& p) const { return tail_(p); }
   double arms(const Vec3& p) const { return std::min(left_arm(p), right_arm(p)); }
   /// In the scene; side: 1 for the left eye, -1 for the right one.
   static Vec3 eye_center(int side) {
@@ -29,7 +28,7 @@ class Creature {
 
  private:
   static inline const Mat3 kHeadTurn = turned(0, -6, 6);
-  static inline const Vec3 kNeck{0, 0.60, 0.02}, kEye{0.098, 0.795, 0.125};
+  static inline const Vec3 kNeck{0, 0.60, 0.02}, kEye{0.098, 0.797, 0.136};
   static constexpr double kEyeRadius = 0.074, kHeadScale = 1.15;
 
   double feet(const Vec3& p) const;
@@ -140,9 +139,9 @@ double Creature::with_eyes(double d, const Vec3& q) const {
   eye.radius = kEyeRadius;
   eye.look = Vec3(0.14, 0.02, 1.0).normalized();
   eye.lid_normal = Vec3(0.22, 1.0, 0.10).normalized();
-  eye.upper = 0.050;
+  eye.upper = 0.052;
   eye.lower = 0.060;
-  eye.pupil = 0.040;
+  eye.pupil = 0.031;
   eye.ramp = 0.011;
   return smooth_union(d, eye_ball(mirrored(q), eye), 0.015);
 }
@@ -178,7 +177,7 @@ Sculpture make_creature() {
   s.parts = {{"feet", [](const Vec3& p) { return p.y() < 0.05; }},
              {"knees", [](const Vec3& p) { return p.y() > 0.10 && p.y() < 0.20 && p.z() > -0.12; }},
              {"arms", [creature](const Vec3& p) { return std::abs(p.x()) > 0.17 && creature->arms(p) < 0.01; }},
-             {"tail", [creature](const Vec3& p) { return p.z() < -0.2 && p.y() < 0.42; }},
+             {"tail", [](const Vec3& p) { return p.z() < -0.2 && p.y() < 0.42; }},
              {"head", [creature](const Vec3& p) { return p.y() > 0.6 && creature->head(p) < 0.005; }},
              {"crown", [](const Vec3& p) { return p.y() > 0.84 && std::abs(p.x()) < 0.2; }},
              {"ears", [](const Vec3& p) { return std::abs(Creature::to_head(p).x()) > 0.21 && p.y() > 0.68; }},

@@ -40,7 +40,7 @@ Octopus::Octopus() {
   eye_.lid_normal = Vec3(0.20, 1.0, 0.10).normalized();
   eye_.upper = 0.060;
   eye_.lower = 0.074;
-  eye_.pupil = 0.050;
+  eye_.pupil = 0.042;
   eye_.ramp = 0.013;
   constexpr int kArms = 8;
   for (int i = 0; i < kArms; ++i) {
