@@ -18,7 +18,7 @@ namespace {
 constexpr double kMaxTets = 1.5e8;
 
 /// Tetrahedra of a lattice: 12 per cubic cell inside, and so many per square cell of the surface.
-constexpr double kTetsPerCell = 12.0, kTetsPerSquare = 6.5;
+constexpr double kTetsPerCell = 12.0, kTetsPerSquare = 1.6;
 
 /// One body on its way; borrowed from the caller of tetrahedralize.
 struct Job {

@@ -1,0 +1,180 @@
+#include "core/tetmesh/tetrahedralize.h"
+
+#include <filesystem>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "tests/support/surfaces.h"
+#include "tests/support/tet_checks.h"
+#include "tests/support/tiny_mesh_reader.h"
+
+namespace softreel {
+namespace {
+
+using test::count_pieces;
+using test::euler_characteristic;
+using test::expect_good_tets;
+using test::expect_manifold_boundary;
+
+/// Fills a surface; collects what was said.
+struct Filling {
+  explicit Filling(int threads = 1) : threads_(threads) {}
+  TetMesh operator()(const SurfaceMesh& surface, const TetrahedralizeParams& params) {
+    const auto collect = [this](const std::string& line) { lines.push_back(line); };
+    return tetrahedralize(surface, params, "blob", threads_, {collect, collect}, times);
+  }
+  std::vector<std::string> lines;
+  StageTimes times;
+
+ private:
+  Threads threads_;
+};
+
+class Tetrahedralize : public testing::Test {
+ protected:
+  void SetUp() override {
+    try {
+      fill(test::make_sphere(1, 4, Vec3::Zero()), {0.5, 0});
+    } catch (const Error& error) {
+      if (std::string(error.what()).find("SOFTREEL_WITH_OPENVDB") == std::string::npos) throw;
+      GTEST_SKIP() << error.what();
+    }
+  }
+  Filling fill;
+};
+
+TEST_F(Tetrahedralize, FillsASphere) {
+  const SurfaceMesh surface = test::make_sphere(1, 24, Vec3::Zero());
+  const TetMesh mesh = fill(surface, {0.12, 0});
+  expect_good_tets(mesh);
+  expect_manifold_boundary(mesh);
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+  EXPECT_EQ(count_pieces(mesh), 1);
+  EXPECT_NEAR(measure_quality(mesh, Threads(1)).volume, 4.0 / 3.0 * std::numbers::pi, 0.05);
+  EXPECT_LT(measure_deviation(surface, mesh, Threads(1)).two_way(), 0.01);
+  EXPECT_TRUE(fill.times.entries().contains("tetrahedralize/distance"));
+}
+
+TEST_F(Tetrahedralize, FillsATorusThatStaysATorus) {
+  const TetMesh mesh = fill(test::make_torus(1, 0.35, 48, 24, Vec3::Zero()), {0.15, 0});
+  expect_good_tets(mesh);
+  expect_manifold_boundary(mesh);
+  EXPECT_EQ(euler_characteristic(mesh), 0);
+}
+
+TEST_F(Tetrahedralize, FillsAThinSlab) {
+  const TetMesh mesh = fill(test::make_box({1, 1, 0.04}, 2, Vec3(0.3, 0.2, 0.1)), {0.1, 0});
+  expect_good_tets(mesh);
+  expect_manifold_boundary(mesh);
+  EXPECT_EQ(count_pieces(mesh), 1);
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+  EXPECT_NEAR(measure_quality(mesh, Threads(1)).volume, 0.32, 0.03);
+}
+
+TEST_F(Tetrahedralize, FillsTwoPiecesAsTwo) {
+  SurfaceMesh surface = test::make_sphere(1, 12, Vec3::Zero());
+  test::append(surface, test::make_sphere(0.5, 12, Vec3(2, 0, 0)));
+  const TetMesh mesh = fill(surface, {0.2, 0});
+  EXPECT_EQ(count_pieces(mesh), 2);
+  EXPECT_EQ(euler_characteristic(mesh), 4);
+}
+
+TEST_F(Tetrahedralize, KeepsACavity) {
+  SurfaceMesh surface = test::make_sphere(1, 12, Vec3::Zero()), hole = test::make_sphere(0.5, 12, Vec3::Zero());
+  test::turn_inside_out(hole);
+  test::append(surface, hole);
+  const TetMesh mesh = fill(surface, {0.15, 0});
+  EXPECT_EQ(euler_characteristic(mesh), 4);
+  EXPECT_NEAR(measure_quality(mesh, Threads(1)).volume, 4.0 / 3.0 * std::numbers::pi * 0.875, 0.1);
+}
+
+TEST_F(Tetrahedralize, GivesTheSameFarFromTheOrigin) {
+  const TetMesh near = fill(test::make_torus(1, 0.35, 32, 16, Vec3::Zero()), {0.15, 0});
+  const TetMesh far = fill(test::make_torus(1, 0.35, 32, 16, Vec3(4e5, -7e5, 1e5)), {0.15, 0});
+  expect_good_tets(far);
+  expect_manifold_boundary(far);
+  EXPECT_NEAR(static_cast<double>(far.tets.size()), static_cast<double>(near.tets.size()), 200);
+  EXPECT_NEAR(measure_quality(far, Threads(1)).volume, measure_quality(near, Threads(1)).volume, 1e-3);
+}
+
+TEST_F(Tetrahedralize, FillsASurfaceTurnedInsideOut) {
+  SurfaceMesh surface = test::make_sphere(1, 12, Vec3::Zero());
+  const TetMesh expected = fill(surface, {0.2, 0});
+  test::turn_inside_out(surface);
+  EXPECT_EQ(fill(surface, {0.2, 0}).tets, expected.tets);
+}
+
+TEST_F(Tetrahedralize, FillsAnOpenSurface) {
+  SurfaceMesh surface = test::make_sphere(1, 16, Vec3::Zero());
+  std::erase_if(surface.triangles, [&](const Triangle& triangle) {
+    return std::ranges::all_of(triangle,
+                               [&](Index v) { return surface.positions[static_cast<std::size_t>(v)][1] < -0.9; });
+  });
+  const TetMesh mesh = fill(surface, {0.15, 0});
+  expect_good_tets(mesh);
+  expect_manifold_boundary(mesh);
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+  EXPECT_NEAR(measure_quality(mesh, Threads(1)).volume, 4.0 / 3.0 * std::numbers::pi, 0.15);
+}
+
+TEST_F(Tetrahedralize, IgnoresAFarUnusedVertex) {
+  SurfaceMesh surface = test::make_sphere(1, 12, Vec3::Zero());
+  const TetMesh expected = fill(surface, {0.2, 0});
+  surface.positions.emplace_back(1e7, 0, 0);
+  EXPECT_EQ(fill(surface, {0.2, 0}).nodes, expected.nodes);
+}
+
+TEST_F(Tetrahedralize, MeetsTheWantedCount) {
+  for (const std::int64_t wanted : {2000, 9000, 30000}) {
+    const TetMesh mesh = fill(test::make_torus(1, 0.35, 48, 24, Vec3::Zero()), {0, wanted});
+    EXPECT_NEAR(static_cast<double>(mesh.tets.size()) / static_cast<double>(wanted), 1.0, 0.05);
+  }
+}
+
+TEST_F(Tetrahedralize, GivesEqualBitsAtOneAndFourThreads) {
+  const SurfaceMesh surface = test::make_torus(1, 0.35, 96, 48, Vec3(0.1, 0.2, 0.3));
+  Filling four(4);
+  const TetMesh a = fill(surface, {0.08, 0}), b = four(surface, {0.08, 0});
+  EXPECT_EQ(a.nodes, b.nodes);
+  EXPECT_EQ(a.tets, b.tets);
+}
+
+TEST_F(Tetrahedralize, NamesAPartThatIsTooThinAndTheEdgeItNeeds) {
+  SurfaceMesh surface = test::make_sphere(1, 12, Vec3::Zero());
+  test::append(surface, test::make_sphere(0.02, 6, Vec3(2.03, 0.07, 0.04)));
+  try {
+    fill(surface, {0.25, 0});
+    FAIL() << "the small sphere vanished without a word";
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(error.kind(), ErrorKind::Input);
+    for (const char* part : {"'blob'", "part 2 of 2", "0.25 m", "Accepted", "smaller edge"})
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+}
+
+TEST_F(Tetrahedralize, RefusesWrongSizesAndEmptySurfaces) {
+  const SurfaceMesh surface = test::make_sphere(1, 4, Vec3::Zero());
+  EXPECT_THROW(fill(surface, {0, 0}), Error);
+  EXPECT_THROW(fill(surface, {0.1, 100}), Error);
+  EXPECT_THROW(fill(surface, {1e-9, 0}), Error);
+  EXPECT_THROW(fill(SurfaceMesh{}, {0.1, 0}), Error);
+}
+
+TEST_F(Tetrahedralize, FillsTheSharedMeshes) {
+  const std::string folder = std::string(SOFTREEL_SOURCE_DIR) + "/../shared/meshes/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  for (const char* name : {"bunny.off", "spot.obj", "suzanne.obj", "cheburashka.obj"}) {
+    SCOPED_TRACE(name);
+    const SurfaceMesh surface = test::read_tiny_mesh(folder + name);
+    const TetMesh mesh = fill(surface, {0, 20000});
+    EXPECT_NEAR(static_cast<double>(mesh.tets.size()), 20000, 1000);
+    expect_good_tets(mesh);
+    expect_manifold_boundary(mesh);
+  }
+}
+
+}  // namespace
+}  // namespace softreel
