@@ -9,27 +9,39 @@
 namespace softreel {
 namespace {
 
-/// The path of a field in the table for a path of a shot: names and positions become '*' and '[]'.
-std::string pattern_of(const std::string& path) {
-  std::string pattern;
-  bool in_index = false;
+/// Without positions in lists: "pin[0].keys[].frame" and "pin.keys.frame" are the same.
+std::string without_positions(const std::string& path) {
+  std::string out;
+  bool in_brackets = false;
   for (const char c : path) {
-    if (c == ']') in_index = false;
-    if (!in_index) pattern += c;
-    if (c == '[') in_index = true;
+    if (c == '[') in_brackets = true;
+    if (!in_brackets) out += c;
+    if (c == ']') in_brackets = false;
   }
-  for (const std::string table : {"body.", "material."}) {
-    if (pattern.rfind(table, 0) != 0) continue;
-    const std::size_t dot = pattern.find('.', table.size());
-    pattern = table + "*" + (dot == std::string::npos ? "" : pattern.substr(dot));
-  }
-  return pattern;
+  return out;
 }
 
-const FieldText* find_text(const std::string& pattern) {
+/// The same path with '*' for the name that follows "body." or "material.".
+std::string with_star(const std::string& path) {
+  for (const std::string table : {"body.", "material."}) {
+    if (path.rfind(table, 0) != 0) continue;
+    const std::size_t dot = path.find('.', table.size());
+    return dot == std::string::npos ? table.substr(0, table.size() - 1) : table + "*" + path.substr(dot);
+  }
+  return path;
+}
+
+const FieldText* find_exactly(const std::string& path) {
   for (const FieldText& text : field_texts())
-    if (text.path == pattern) return &text;
+    if (without_positions(text.path) == path) return &text;
   return nullptr;
+}
+
+const FieldText* find_text(const std::string& path) {
+  const std::string plain = without_positions(path);
+  if (plain.rfind("body.", 0) == 0)  // body.FIELD: of the only body
+    if (const FieldText* text = find_exactly("body.*." + plain.substr(5))) return text;
+  return find_exactly(with_star(plain));
 }
 
 /// The heading of a table as a file spells it: "[[body.NAME.pin]]".
@@ -105,18 +117,14 @@ std::vector<std::string> field_paths() {
 }
 
 std::string explain_field(const std::string& path) {
-  std::string pattern = pattern_of(path);
-  const FieldText* text = find_text(pattern);
-  if (text == nullptr && path.rfind("body.", 0) == 0)
-    text = find_text(pattern = "body.*." + pattern_of("x." + path.substr(5)).substr(2));
-  if (text == nullptr) text = find_text(path);
+  const FieldText* text = find_text(path);
   if (text == nullptr) {
     std::vector<std::string> known;
-    for (const FieldText& one : field_texts()) known.push_back(one.path);
+    for (const FieldText& one : field_texts()) known.push_back(without_positions(one.path));
     throw input_error(
         fmt::format("{} is wrong because a shot has no such field.\n  Accepted: a path such as body.*.tets or "
                     "camera.margin. Look it up in the reference of fields.{}",
-                    path, suggestion(pattern, known)));
+                    path, suggestion(with_star(without_positions(path)), known)));
   }
   std::string out = fmt::format("{}: {}\n", text->path, text->sentence);
   if (text->is_table) {

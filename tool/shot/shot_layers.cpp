@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "tool/shot/codecs.h"
 #include "tool/shot/schema.h"
 #include "tool/shot/schema_tables.h"
 
@@ -33,16 +35,15 @@ std::string real_path(const std::string& path) {
   return ignored ? path : real.string();
 }
 
+/// Each file must be of a version that this program reads; which one wins in the merged document does not matter.
 void check_schema_version(const TomlValue& document) {
   const TomlValue* schema = document.find("schema");
   if (schema == nullptr) return;
-  const auto* version = std::get_if<std::int64_t>(&schema->data);
-  if (version != nullptr && *version <= kSchemaVersion) return;  // what is below 1 the table refuses
-  if (version == nullptr) return;                                // as it refuses what is no number
-  throw input_error(
-      fmt::format("{}: schema = {} is wrong because the file is written for a newer softreel.\n  Accepted: 1 "
-                  "to {}. Use a newer softreel, or a file of this version.",
-                  to_string(schema->origin), *version, kSchemaVersion));
+  const auto describes = [](const FieldText& text) { return text.path == "schema"; };
+  const FieldText& text = *std::find_if(field_texts().begin(), field_texts().end(), describes);
+  const Place place{"schema", &text, nullptr};
+  if (parse_whole(place, *schema, 1, std::numeric_limits<std::int64_t>::max()) > kSchemaVersion)
+    throw value_error(place, *schema, "the file is written for a newer softreel", "Use a newer softreel.");
 }
 
 /// The paths that `use` names, each with the place that names it.

@@ -169,7 +169,8 @@ Motion parse_motion(const Place& place, const TomlValue& value) {
   std::vector<TransformKeyText> texts;
   const std::size_t problems_before = place.problems->size();
   for (const TomlValue& item : *value.array()) {
-    read_table(transform_key_table(), place.part(fmt::format("[{}]", texts.size())), item, texts.emplace_back());
+    const Place at = place.part(fmt::format("[{}]", texts.size()));
+    read_table(transform_key_table(), at, item, texts.emplace_back());
     frames.push_back(texts.back().frame);
   }
   Motion motion;

@@ -1,0 +1,115 @@
+#include "tests/tool/shot/shot_files.h"
+#include "tool/shot/shot_load.h"
+
+namespace softreel {
+namespace {
+
+using SetOverrides = ShotFiles;
+
+TEST_F(SetOverrides, AreSplitAtTheFirstEqualsSign) {
+  const Override one = parse_override(" body.mesh = a=b.ply ");
+  EXPECT_EQ(one.path, "body.mesh");
+  EXPECT_EQ(one.value, "a=b.ply");
+  EXPECT_THROW(parse_override("body.tets"), Error);
+  EXPECT_THROW(parse_override("=3"), Error);
+}
+
+TEST_F(SetOverrides, TakeEveryTypeOfValue) {
+  const Shot shot =
+      load(body(""), {"shot.fps=12.5", "shot.frames=[3, 9]", "output.png=false", "shot.name=quick",
+                      "shot.mode=\"static\"", "gravity.acceleration=[0, 0, -1]", "output.directory=a b/c"});
+  EXPECT_EQ(shot.settings.fps, 12.5);
+  EXPECT_EQ(shot.settings.first_frame, 3);
+  EXPECT_EQ(shot.settings.last_frame, 9);
+  EXPECT_FALSE(shot.output.png);
+  EXPECT_EQ(shot.settings.name, "quick");
+  EXPECT_EQ(shot.settings.mode, SimulationMode::Static);
+  EXPECT_EQ(shot.gravity, Vec3(0, 0, -1));
+  EXPECT_EQ(shot.output.directory, "a b/c");
+}
+
+TEST_F(SetOverrides, TakeWordsThatLookLikeDatesAsText) {
+  EXPECT_EQ(load(body(""), {"shot.name=2024-01-31"}).settings.name, "2024-01-31");
+}
+
+TEST_F(SetOverrides, AddressTheOnlyBodyOrANamedOne) {
+  EXPECT_EQ(load(body(""), {"body.tets=77"}).bodies[0].tets, 77);
+  EXPECT_EQ(load(body(""), {"body.a.tets=78"}).bodies[0].tets, 78);
+  EXPECT_EQ(load(kFullShot, {"body.first_by_name.tets=79"}).bodies[1].tets, 79);
+  EXPECT_EQ(load("[body.\"a.b\"]\nmesh = \"x\"\n", {"body.\"a.b\".tets=80"}).bodies[0].tets, 80);
+}
+
+TEST_F(SetOverrides, ReachIntoLists) {
+  const Shot shot = load(kFullShot, {"body.second_by_name.pin[0].keys[1].translate=[7, 8, 9]",
+                                     "body.second_by_name.pin[0].keys[1].scale[2]=5", "light[1].power=3"});
+  EXPECT_EQ(shot.bodies[0].pins[0].keys.keys[1].value.translate, Vec3(7, 8, 9));
+  EXPECT_EQ(shot.bodies[0].pins[0].keys.keys[1].value.scale, Vec3(1, 2, 5));
+  EXPECT_EQ(shot.lights[1].power, 3);
+}
+
+TEST_F(SetOverrides, MakeTablesThatAreNotThere) {
+  const Shot shot = load(body(""), {"ground.height=0.5", "material.default.density=500"});
+  EXPECT_EQ(shot.ground.value().height, 0.5f);
+  EXPECT_EQ(shot.materials.at("default").physics.density, 500);
+}
+
+TEST_F(SetOverrides, TakeThePlaceOfAlternativesInOrder) {
+  const Shot edge = load(body("tets = 5\nfit = 1\n"), {"body.edge=0.5", "body.scale=2"});
+  EXPECT_EQ(edge.bodies[0].tets, 0);
+  EXPECT_EQ(edge.bodies[0].edge, 0.5);
+  EXPECT_EQ(edge.bodies[0].fit, 0);
+  EXPECT_EQ(load(body(""), {"body.edge=0.5", "body.tets=6"}).bodies[0].tets, 6);
+  EXPECT_EQ(load(body(""), {"body.tets=5", "body.tets=6"}).bodies[0].tets, 6);
+}
+
+TEST_F(SetOverrides, ReplaceThePresets) {
+  write("one.toml", "[render]\nsamples = 1\n");
+  write("two.toml", "[render]\nsamples = 2\n");
+  EXPECT_EQ(load("use = [\"one.toml\"]\n" + body(""), {"use=[\"two.toml\"]"}).render.params.samples, 2);
+}
+
+/// An override that leads nowhere and parts of its message.
+struct Wrong {
+  const char* set;
+  std::vector<const char*> parts;
+};
+
+TEST_F(SetOverrides, SayWhatIsWrongWithThem) {
+  const std::vector<Wrong> cases{
+      {"body.tetz=3", {"--set: body.tetz = 3", "neither a body nor a field", "Did you mean 'tets'?"}},
+      {"body.b.tets=3", {"--set: body.b.tets = 3", "neither a body nor a field of a body named b"}},
+      {"body.a.tetz=3", {"--set: body.a.tetz = 3", "no field of this name", "Did you mean 'tets'?"}},
+      {"rendr.width=3", {"--set: rendr", "no field of this name", "Did you mean 'render'?"}},
+      {"render.widht=3", {"--set: render.widht = 3", "Did you mean 'width'?"}},
+      {"render.width=0", {"--set: render.width = 0", "out of range", "Accepted: 1 to 32768 (pixels)"}},
+      {"material.gell.density=3", {"there is no material named gell", "Accepted: gel", "Did you mean 'gel'?"}},
+      {"light[2].power=3", {"light has 1 entries", "positions 0 to 0"}},
+      {"body.pin[0].active=[1, 2]", {"body.a.pin has 0 entries", "no position"}},
+      {"light.power=3", {"light is a list", "light[0]"}},
+      {"shot.fps.x=3", {"shot.fps is a whole number", "Shorten the path."}},
+      {"shot..fps=3", {"its path cannot be read"}},
+      {"light[x].power=3", {"its path cannot be read"}},
+      {"light[0=3", {"its path cannot be read"}},
+      {"light[99999999999999999999]=3", {"its path cannot be read"}},
+      {"shot.frames=[1, 2", {"neither TOML nor a bare word", "double quotes"}},
+      {"shot.name=", {"neither TOML nor a bare word"}},
+      {"shot.fps=1\nx = 2", {"neither TOML nor a bare word"}},
+      {"shot.fps=fast", {"--set: shot.fps = \"fast\"", "it is text, not a number"}},
+  };
+  const std::string text = body("[shot]\nfps = 24\n[[light]]\ntype = \"area\"\n[material.gel]\n");
+  for (const Wrong& wrong : cases) {
+    const std::string said = message(text, {wrong.set});
+    for (const char* part : wrong.parts)
+      EXPECT_NE(said.find(part), std::string::npos) << "no '" << part << "' in:\n" << said;
+    EXPECT_NE(said.find("Accepted: "), std::string::npos) << said;
+  }
+}
+
+TEST_F(SetOverrides, AskWhichOfSeveralBodiesIsMeant) {
+  const std::string said = message(kFullShot, {"body.tets=3"});
+  EXPECT_NE(said.find("the shot has 2 bodies"), std::string::npos) << said;
+  EXPECT_NE(said.find("Name the body: body.second_by_name.tets"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace softreel
