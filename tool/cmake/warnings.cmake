@@ -1,6 +1,8 @@
 # How every source of softreel is compiled; linked PRIVATE by every target.
 add_library(softreel_warnings INTERFACE)
 target_compile_options(softreel_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
+# g++ 12 warns wrongly about std::string inside of std::optional and of std::string + (its bugs 105562 and 105329).
+target_compile_options(softreel_warnings INTERFACE -Wno-maybe-uninitialized -Wno-restrict)
 if(SOFTREEL_WERROR)
   target_compile_options(softreel_warnings INTERFACE -Werror)
 endif()

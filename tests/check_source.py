@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""The rules of the source that a search can check: formatting, direction of includes, fences, budgets, paths.
+
+Prints each violation as FILE:LINE: what is wrong; exit status 1 if there is any.
+"""
+import os
+import re
+import subprocess
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+MAX_FILE_LINES = 400
+
+# Layers from the bottom; a folder may include itself and those above it in this list (that stand before it).
+CORE_ORDER = ["base", "mesh", "tetmesh", "sparse", "elasticity", "multigrid", "constraints", "dynamics"]
+SKINNING_MAY = {"base", "mesh", "tetmesh", "skinning"}
+RENDER_MAY = {"base", "mesh"}
+
+# Header pattern, the only files that may include it.
+FENCES = [
+    (r"<assimp/", r"core/mesh/mesh_import\.cpp$"),
+    (r"<openvdb/", r"core/tetmesh/signed_distance\.cpp$"),
+    (r"<(tbb|oneapi)/", r"core/base/parallel\.(h|cpp)$"),
+    (r"<embree3/", r"render/pathtrace/ray_scene\.cpp$"),
+    (r"<(EGL|GL|epoxy)/", r"render/preview/preview_egl\.cpp$"),
+    (r"<(Imf|Imath|OpenEXR|png\.h|stb)", r"render/image/image_io\.cpp$"),
+    (r"<(toml\+\+|nlohmann|CLI)/", r"^(tool|tests/tool)/"),
+    (r"<(immintrin|x86intrin|experimental/simd)", r"_simd\.cpp$"),
+]
+
+
+def sources():
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.h", "*.cpp"], cwd=ROOT, check=True,
+                            capture_output=True, text=True).stdout
+    return [path for path in listed.splitlines() if os.path.exists(os.path.join(ROOT, path))]
+
+
+def include_problem(path, included):
+    """Why `path` may not include `included` (a path from the root), or None."""
+    source, target = path.split("/"), included.split("/")
+    rank = {"core": 0, "render": 1, "tool": 2}
+    if source[0] not in rank or target[0] not in rank:
+        return None
+    if rank[target[0]] > rank[source[0]]:
+        return "points against tool -> render -> core"
+    if source[0] == "core" and target[0] == "core":
+        a, b = source[1], target[1]
+        if a == "skinning":
+            return None if b in SKINNING_MAY else "skinning uses base, mesh and tetmesh only"
+        # The solver carries where surface points sit: plain data of skinning.
+        if a in ("constraints", "dynamics") and included == "core/skinning/embedding.h":
+            return None
+        if b not in CORE_ORDER or CORE_ORDER.index(b) > CORE_ORDER.index(a):
+            return "core/%s may not include core/%s" % (a, b)
+    if source[0] == "render" and target[0] == "core" and target[1] not in RENDER_MAY:
+        return "render uses core/base and core/mesh only"
+    return None
+
+
+def check_file(path):
+    with open(os.path.join(ROOT, path), encoding="utf-8") as f:
+        lines = f.read().splitlines()
+    found = []
+    if len(lines) > MAX_FILE_LINES and "table" not in path:
+        found.append((1, "has %d lines; at most %d are accepted: split it" % (len(lines), MAX_FILE_LINES)))
+    if path.endswith(".h") and "#pragma once" not in lines:
+        found.append((1, "has no #pragma once"))
+    if path.endswith(".h") and not lines[0].startswith("///"):
+        found.append((1, "does not open with a sentence that says what it is for"))
+    for number, line in enumerate(lines, 1):
+        match = re.match(r'\s*#\s*include\s*([<"])([^>"]+)[>"]', line)
+        if match:
+            if match.group(1) == '"':
+                problem = include_problem(path, match.group(2))
+                if problem:
+                    found.append((number, problem))
+                if "/" not in match.group(2):
+                    found.append((number, "includes by path from the root only"))
+            for pattern, allowed in FENCES:
+                if re.match(pattern, match.group(1) + match.group(2)) and not re.search(allowed, path):
+                    found.append((number, "%s is fenced off here" % match.group(2)))
+        if re.search(r"\b(TODO|FIXME|XXX)\b", line):
+            found.append((number, "unfinished work belongs into an issue"))
+    return ["%s:%d: %s" % (path, number, what) for number, what in found]
+
+
+def main():
+    paths = sources()
+    problems = [problem for path in paths for problem in check_file(path)]
+    formatted = subprocess.run(["clang-format", "--dry-run", "-Werror"] + paths, cwd=ROOT, capture_output=True, text=True)
+    problems += [line for line in formatted.stderr.splitlines() if "error:" in line][:20]
+    for problem in problems:
+        print(problem)
+    print("source rules: %d files, %d problems" % (len(paths), len(problems)))
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,116 @@
+/// What the program says when something is wrong: one clear message and the right exit status.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/program.h"
+
+namespace softreel {
+namespace {
+
+using namespace softreel::testing;
+
+struct Mistake {
+  const char* name;
+  const char* arguments;  ///< {0} is the folder
+  int status;
+  std::vector<const char*> said;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out) {
+  *out << mistake.arguments;
+}
+
+class Mistakes : public ::testing::TestWithParam<Mistake> {};
+
+TEST_P(Mistakes, AreSaidOnceWithTheRightStatus) {
+  const Mistake& mistake = GetParam();
+  const std::string folder = shot_folder("mistake");
+  write_text(folder + "/garbage.obj", "this is no mesh\n");
+  write_text(folder + "/unknown.toml", sphere_shot("[rendr]\nsamples = 3\n"));
+  write_text(folder + "/syntax.toml", "schema = 1\n[shot\n");
+  const Outcome outcome = run(fmt::format(fmt::runtime(mistake.arguments), folder));
+  EXPECT_EQ(outcome.status, mistake.status) << outcome.err;
+  for (const char* part : mistake.said)
+    EXPECT_NE((outcome.err + outcome.out).find(part), std::string::npos) << part << "\nin: " << outcome.err;
+  const auto first = outcome.err.find("softreel: ");
+  EXPECT_EQ(outcome.err.find("softreel: ", first + 1), std::string::npos) << "two messages: " << outcome.err;
+}
+
+const Mistake kMistakes[] = {
+    {"MissingShot", "softreel render {0}/none.toml", 2, {"none.toml", "No such file"}},
+    {"SyntaxError", "softreel render {0}/syntax.toml", 2, {"syntax.toml:2:"}},
+    {"MissingMesh", "softreel render {0}/shot.toml --output {0}/out --set body.mesh=none.obj", 2, {"none.obj"}},
+    {"UnreadableMesh",
+     "softreel render {0}/shot.toml --output {0}/out --set body.mesh={0}/garbage.obj",
+     2,
+     {"garbage.obj"}},
+    {"MeshIsAFolder", "softreel render {0}/shot.toml --output {0}/out --set body.mesh={0}", 2, {"folder"}},
+    {"UnknownField", "softreel check {0}/unknown.toml", 2, {"unknown.toml:", "rendr", "render"}},
+    {"UnknownFieldOfSet", "softreel check {0}/shot.toml --set render.sample=3", 2, {"sample", "samples"}},
+    {"WrongType", "softreel check {0}/shot.toml --set 'render.samples=\"many\"'", 2, {"render.samples", "many"}},
+    {"OutOfRange",
+     "softreel check {0}/shot.toml --set material.soft.poisson_ratio=0.5",
+     2,
+     {"poisson_ratio", "0.5", "Accepted"}},
+    {"EmptySelection",
+     "softreel check {0}/shot.toml --set 'body.ball.pin[0].select={{sphere={{center=[9,9,9],radius=0.1}}}}'",
+     2,
+     {"pin[0]", "no point"}},
+    {"UnknownGroup",
+     "softreel check {0}/shot.toml --set 'body.ball.pin[0].select={{group=\"spere\"}}'",
+     2,
+     {"spere", "sphere"}},
+    {"ReversedFramesOfShot", "softreel check {0}/shot.toml --set 'shot.frames=[9, 2]'", 2, {"frames", "9"}},
+    {"ReversedFrames", "softreel render {0}/shot.toml --frames 3-2", 2, {"--frames", "reversed"}},
+    {"FramesOutside", "softreel render {0}/shot.toml --frames 3-9", 2, {"--frames", "1-4"}},
+    {"FramesNoNumbers", "softreel render {0}/shot.toml --frames all", 2, {"--frames", "all"}},
+    {"OutputIsAFile", "softreel render {0}/shot.toml --output {0}/sphere.obj/out", 1, {"sphere.obj", "--output"}},
+    {"NoDiskSpace", "ulimit -f 8; softreel render {0}/shot.toml --output {0}/out", 1, {"cannot be written"}},
+    {"UnknownCommand", "softreel rendr {0}/shot.toml", 2, {"rendr", "Did you mean render?"}},
+    {"UnknownOption", "softreel render {0}/shot.toml --frame 3", 2, {"--frame"}},
+    {"NoCommand", "softreel", 2, {"subcommand"}},
+    {"UnknownExportFormat", "softreel export {0}/shot.toml --format fbx", 2, {"fbx", "obj, ply, pc2"}},
+    {"TetrahedraToUnknownFormat", "softreel tetrahedralize {0}/sphere.obj -o {0}/a.xyz", 2, {".xyz", ".vtu"}},
+    {"InspectMissing", "softreel inspect {0}/none.ply", 2, {"none.ply"}},
+    {"SetWithoutValue", "softreel check {0}/shot.toml --set render.samples", 2, {"render.samples", "="}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Program, Mistakes, ::testing::ValuesIn(kMistakes),
+                         [](const auto& mistake) { return std::string(mistake.param.name); });
+
+TEST(ReadOnlyOutput, IsSaidWithTheFolder) {
+  const std::string folder = shot_folder("readonly");
+  const std::string locked = folder + "/locked";
+  // Root may write anywhere: the program runs as nobody.
+  const Outcome probe = run("setpriv --reuid 65534 --clear-groups test -x " SOFTREEL_PROGRAM);
+  if (probe.status != 0) GTEST_SKIP() << "cannot run the program as another user here: " << probe.err;
+  run(fmt::format("mkdir {0}; chmod 555 {0}; chmod 755 {1} {1}/..", locked, folder));
+  const Outcome outcome = run(fmt::format("setpriv --reuid 65534 --clear-groups {} render {}/shot.toml --output {}/out",
+                                          SOFTREEL_PROGRAM, folder, locked));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find(locked), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("Permission denied"), std::string::npos) << outcome.err;
+}
+
+TEST(FullDisk, KeepsTheFramesThatWereFinished) {
+  const std::string folder = shot_folder("full");
+  ASSERT_EQ(run(fmt::format("softreel render {0}/shot.toml --output {0}/out --frames 1-2 --quiet", folder)).status, 0);
+  const std::string first = read_text(folder + "/out/ball.0001.png");
+  EXPECT_EQ(run(fmt::format("ulimit -f 2; softreel render {0}/shot.toml --output {0}/out --quiet", folder)).status, 1);
+  EXPECT_EQ(read_text(folder + "/out/ball.0001.png"), first);
+  EXPECT_EQ(run(fmt::format("softreel render {0}/shot.toml --output {0}/out --quiet", folder)).status, 0);
+  EXPECT_TRUE(exists(folder + "/out/ball.0004.png"));
+}
+
+TEST(Help, NamesEverySubcommandAndEndsWithStatusZero) {
+  const Outcome outcome = run("softreel --help");
+  EXPECT_EQ(outcome.status, 0);
+  for (const char* command :
+       {"render", "simulate", "export", "preview", "golden", "batch", "check", "inspect", "tetrahedralize"}) {
+    EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
+    EXPECT_EQ(run(fmt::format("softreel {} --help", command)).status, 0) << command;
+  }
+}
+
+}  // namespace
+}  // namespace softreel

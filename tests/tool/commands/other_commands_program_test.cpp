@@ -1,0 +1,171 @@
+/// Golden images, batches, exports, previews, plans and facts, through the built program.
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace softreel {
+namespace {
+
+using namespace softreel::testing;
+using nlohmann::json;
+
+TEST(Golden, FailsOnChangeAndPassesOnTheSamePicture) {
+  const std::string folder = shot_folder("golden", "[golden]\nframes = [1, 3]\n");
+  const auto golden = [&](const std::string& more) {
+    return run(fmt::format("softreel golden {0}/shot.toml --output {0}/out --quiet {1}", folder, more));
+  };
+  const Outcome missing = golden("");
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_NE(missing.err.find("--update"), std::string::npos) << missing.err;
+  EXPECT_EQ(golden("--update").status, 0);
+  EXPECT_TRUE(exists(folder + "/golden/ball.0003.png"));
+  EXPECT_EQ(golden("").status, 0);
+  const Outcome changed = golden("--set 'material.soft.base_color=[0.1,0.9,0.1]'");
+  EXPECT_EQ(changed.status, 1);
+  EXPECT_NE(changed.err.find("block"), std::string::npos) << changed.err;
+  EXPECT_TRUE(exists(folder + "/out/ball.0003.difference.png"));
+  const Outcome resized = golden("--set render.width=32");
+  EXPECT_EQ(resized.status, 1);
+  EXPECT_NE(resized.err.find("32 x 36"), std::string::npos) << resized.err;
+}
+
+TEST(Batch, OneFailingShotStopsNoOther) {
+  const std::string folder = shot_folder("batch");
+  write_text(folder + "/bad.toml", sphere_shot("[rendr]\n"));
+  write_text(folder + "/second.toml", sphere_shot());
+  const Outcome outcome = run(fmt::format(
+      "softreel batch {0}/bad.toml {0}/shot.toml {0}/second.toml --output {0}/out --frames 1-2 --json --set "
+      "shot.name=ball",
+      folder));
+  EXPECT_EQ(outcome.status, 1);
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["shots"][0]["status"], 2);
+  EXPECT_EQ(report["shots"][1]["status"], 0);
+  EXPECT_EQ(report["shots"][2]["status"], 0);
+  EXPECT_TRUE(exists(folder + "/out/ball.0002.png"));
+}
+
+/// Vertex lines of an OBJ file as numbers.
+std::vector<double> obj_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("v ")) continue;
+    std::istringstream words(line.substr(2));
+    for (std::string word; words >> word;) numbers.push_back(std::stod(word));
+  }
+  return numbers;
+}
+
+/// The positions of one sample of a PC2 file.
+std::vector<float> pc2_sample(const std::string& bytes, std::size_t sample) {
+  std::uint32_t points = 0;
+  std::memcpy(&points, bytes.data() + 16, 4);
+  std::vector<float> values(3 * points);
+  std::memcpy(values.data(), bytes.data() + 32 + sample * values.size() * 4, values.size() * 4);
+  return values;
+}
+
+TEST(Export, TheRestFrameIsTheFileItselfAndFormatsAgree) {
+  const std::string folder = shot_folder("export");
+  for (const char* format : {"obj", "pc2", "ply"})
+    ASSERT_EQ(
+        run(fmt::format("softreel export {0}/shot.toml --output {0}/out --quiet --format {1}", folder, format)).status,
+        0);
+  const std::string file = read_text(folder + "/sphere.obj");
+  const std::string rest = read_text(folder + "/out/ball.ball.0001.obj");
+  EXPECT_EQ(obj_numbers(rest), obj_numbers(file));
+  const auto count = [](const std::string& text, const std::string& what) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+    return n;
+  };
+  EXPECT_EQ(count(rest, "\nf "), count(file, "\nf ")) << "polygons were not kept";
+  const std::vector<double> moved = obj_numbers(read_text(folder + "/out/ball.ball.0004.obj"));
+  EXPECT_NE(moved, obj_numbers(file));
+  const std::string pc2 = read_text(folder + "/out/ball.ball.pc2");
+  EXPECT_EQ(pc2.substr(0, 12), std::string("POINTCACHE2\0", 12));
+  const std::vector<float> last = pc2_sample(pc2, 3);
+  ASSERT_EQ(last.size(), moved.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_EQ(last[i], static_cast<float>(moved[i])) << i;
+}
+
+TEST(Export, PinnedPointsStayAndWorldSpaceIsThePlacedOne) {
+  const std::string folder = shot_folder("world", "");
+  ASSERT_EQ(
+      run(fmt::format("softreel export {0}/shot.toml --output {0}/out --quiet --space world --set body.fit=2", folder))
+          .status,
+      0);
+  const std::vector<double> rest = obj_numbers(read_text(folder + "/out/ball.ball.0001.obj"));
+  const std::vector<double> last = obj_numbers(read_text(folder + "/out/ball.ball.0004.obj"));
+  double highest = 0;
+  for (std::size_t i = 1; i < rest.size(); i += 3) {
+    highest = std::max(highest, rest[i]);
+    if (rest[i] > 0.4 - 1e-9) continue;  // the pin holds the lowest fifth
+    for (std::size_t k = i - 1; k <= i + 1; ++k) EXPECT_NEAR(last[k], rest[k], 1e-12);
+  }
+  EXPECT_NEAR(highest, 2.0, 1e-12);
+}
+
+TEST(Preview, DrawsEveryFrameOrSaysWhyNot) {
+  const std::string folder = shot_folder("preview");
+  const Outcome outcome = run(fmt::format("softreel preview {0}/shot.toml --output {0}/out --frames 1-2", folder));
+  if (outcome.status != 0) {
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("EGL"), std::string::npos) << outcome.err;
+    GTEST_SKIP() << "no EGL here: " << outcome.err;
+  }
+  EXPECT_TRUE(exists(folder + "/out/ball.preview.0001.png"));
+  EXPECT_TRUE(exists(folder + "/out/ball.preview.0002.png"));
+}
+
+TEST(DryRun, SaysWhatWouldBeDoneAndWritesNothing) {
+  const std::string folder = shot_folder("dry");
+  const Outcome outcome = run(fmt::format("softreel render {0}/shot.toml --output {0}/out --dry-run", folder));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* part : {"700 tetrahedra", "64 x 36", "memory", "time"})
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\n" << outcome.out;
+  EXPECT_FALSE(exists(folder + "/out"));
+}
+
+TEST(Check, CountsTheSelectedPoints) {
+  const std::string folder = shot_folder("check");
+  const Outcome outcome = run(fmt::format("softreel check {0}/shot.toml", folder));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("body.ball.pull[0]"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("4 points"), std::string::npos) << outcome.out;
+}
+
+TEST(Inspect, CountsWhatTheFileHolds) {
+  const std::string folder = shot_folder("inspect");
+  const Outcome outcome = run(fmt::format("softreel inspect {0}/sphere.obj --json", folder));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json facts = json::parse(outcome.out);
+  EXPECT_EQ(facts["vertices"], 2 + 11 * 24);
+  EXPECT_EQ(facts["triangles"], 2 * 24 + 2 * 10 * 24);
+  EXPECT_EQ(facts["boundary_edges"], 0);
+  EXPECT_EQ(facts["pieces"], 1);
+}
+
+TEST(Tetrahedralize, WritesElementsWithinTheirBounds) {
+  const std::string folder = shot_folder("tets");
+  for (const char* extension : {"vtu", "msh", "mesh"}) {
+    const Outcome outcome = run(fmt::format(
+        "softreel tetrahedralize {0}/sphere.obj -o {0}/out.{1} --tets 3000 --quiet --json", folder, extension));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json report = json::parse(outcome.out);
+    EXPECT_NEAR(report["tets"].get<double>(), 3000, 150);
+    EXPECT_GE(report["min_dihedral_deg"].get<double>(), 10.2);
+    EXPECT_LE(report["max_dihedral_deg"].get<double>(), 164.8);
+    EXPECT_TRUE(exists(fmt::format("{}/out.{}", folder, extension)));
+  }
+}
+
+}  // namespace
+}  // namespace softreel

@@ -1,0 +1,170 @@
+/// The program as its user meets it: rendering, running again, threads, damage, interruption.
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace softreel {
+namespace {
+
+using namespace softreel::testing;
+using nlohmann::json;
+
+/// Runs and expects success; returns the JSON report.
+json render(const std::string& folder, const std::string& output, const std::string& options = "",
+            const std::string& command = "render") {
+  const Outcome outcome =
+      run(fmt::format("softreel {} {}/shot.toml --output {} --quiet --json {}", command, folder, output, options));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return json::parse(outcome.out);
+}
+
+/// Every file of two folders has the same bytes, but for the reports, which hold times, and the resolved shot, which
+/// holds paths and threads.
+void expect_equal_folders(const std::string& a, const std::string& b) {
+  const auto kept = [](std::vector<std::string> names) {
+    std::erase_if(names, [](const std::string& name) {
+      return name.ends_with(".report.json") || name.ends_with(".resolved.toml");
+    });
+    return names;
+  };
+  const auto names = kept(files_under(a));
+  ASSERT_EQ(names, kept(files_under(b)));
+  for (const std::string& name : names)
+    EXPECT_TRUE(read_text(a + "/" + name) == read_text(b + "/" + name)) << name << " differs";
+}
+
+TEST(Render, MakesEveryFrameAndSaysSo) {
+  const std::string folder = shot_folder("render");
+  const json report = render(folder, folder + "/out");
+  for (int frame = 1; frame <= 4; ++frame) EXPECT_TRUE(exists(fmt::format("{}/out/ball.{:04}.png", folder, frame)));
+  EXPECT_TRUE(exists(folder + "/out/ball.resolved.toml"));
+  EXPECT_EQ(report["pictures"]["traced"], 4);
+  EXPECT_EQ(report["simulation"]["frames"], 4);
+}
+
+TEST(Render, ASecondRunMakesNothingAgain) {
+  const std::string folder = shot_folder("again");
+  render(folder, folder + "/out");
+  const json report = render(folder, folder + "/out");
+  EXPECT_EQ(report["pictures"]["kept"], 4);
+  EXPECT_EQ(report["simulation"]["frames_from_cache"], 4);
+}
+
+TEST(Render, AnotherLightTracesButDoesNotSimulate) {
+  const std::string folder = shot_folder("light");
+  render(folder, folder + "/out");
+  const json report = render(folder, folder + "/out", "--set 'environment.zenith=[0.9,0.2,0.1]'");
+  EXPECT_EQ(report["pictures"]["traced"], 4);
+  EXPECT_EQ(report["simulation"]["frames_from_cache"], 4);
+  EXPECT_TRUE(report["bodies"][0]["tets_from_cache"]);
+}
+
+TEST(Render, AnEditedKeyResimulatesFromTheFirstFrameItCanAffect) {
+  const std::string folder = shot_folder("key");
+  render(folder, folder + "/out");
+  const json report =
+      render(folder, folder + "/out",
+             "--set 'body.ball.pull[0].keys=[{frame=1},{frame=3,translate=[0,0,0]},{frame=4,translate=[0.2,0.2,0]}]' "
+             "--set 'body.ball.pull[0].active=[4,4]'",
+             "simulate");
+  // Frame 1 is the rest state; frames 2 and 3 lost the pull.
+  EXPECT_EQ(report["simulation"]["frames_from_cache"], 1);
+}
+
+TEST(Render, HasTheSameBitsTwiceAndWithAnyNumberOfThreads) {
+  const std::string folder = shot_folder("threads", "exr = true\n");
+  for (const char* threads : {"1", "2", "4"}) {
+    const std::string output = folder + "/out" + threads;
+    render(folder, output, fmt::format("--threads {} --set render.auxiliary=true --set render.shutter=0.5", threads));
+    for (const char* format : {"obj", "ply", "pc2"})
+      render(folder, output,
+             fmt::format("--threads {} --format {} --set render.auxiliary=true "
+                         "--set render.shutter=0.5",
+                         threads, format),
+             "export");
+  }
+  expect_equal_folders(folder + "/out1", folder + "/out2");
+  expect_equal_folders(folder + "/out1", folder + "/out4");
+}
+
+TEST(Render, ADamagedPictureOrCacheFileIsSaidAndMadeAgain) {
+  const std::string folder = shot_folder("damage");
+  render(folder, folder + "/out");
+  const std::string picture = folder + "/out/ball.0002.png", good = read_text(picture);
+  write_text(picture, good.substr(0, good.size() / 2));
+  std::string cached;
+  for (const std::string& name : files_under(folder + "/out/.cache/simulation"))
+    cached = folder + "/out/.cache/simulation/" + name;
+  const std::string state = read_text(cached);
+  std::string flipped = state;
+  flipped[flipped.size() / 2] ^= 1;
+  write_text(cached, flipped);
+  const Outcome outcome = run(fmt::format("softreel render {0}/shot.toml --output {0}/out --quiet", folder));
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find(picture + ": damaged"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("damaged cache file"), std::string::npos) << outcome.err;
+  EXPECT_EQ(read_text(picture), good);
+  EXPECT_TRUE(read_text(cached) == state);
+}
+
+TEST(Render, AnInterruptedRunKeepsItsFramesAndTheNextOneEndsEqual) {
+  const std::string folder = shot_folder("interrupt");
+  const std::string more = "--set shot.frames='[1,40]' --set render.samples=16";
+  render(folder, folder + "/whole", more);
+  for (const char* signal : {"INT", "KILL"}) {
+    const std::string output = folder + "/out" + signal;
+    // Waits for the third picture, so that the signal comes in the middle of the work.
+    const Outcome outcome =
+        run(fmt::format("{0} render {1}/shot.toml --output {2} --quiet {3} & pid=$!; "
+                        "while [ ! -e {2}/ball.0003.png ] && kill -0 $pid 2>/dev/null; do sleep 0.01; done; "
+                        "kill -{4} $pid; wait $pid",
+                        SOFTREEL_PROGRAM, folder, output, more, signal));
+    EXPECT_EQ(outcome.status, std::string(signal) == "INT" ? 130 : 137) << outcome.err;
+    EXPECT_FALSE(exists(output + "/ball.0040.png")) << "the signal came too late to test anything";
+    for (int frame = 1; frame <= 40; ++frame) {
+      const std::string name = fmt::format("/ball.{:04}.png", frame);
+      if (!exists(output + name)) continue;
+      EXPECT_TRUE(read_text(output + name) == read_text(folder + "/whole" + name)) << name;
+    }
+    render(folder, output, more);
+    for (const std::string& name : files_under(output))  // what the killed process was writing
+      if (name.ends_with(".part")) std::filesystem::remove(output + "/" + name);
+    expect_equal_folders(folder + "/whole", output);
+  }
+}
+
+TEST(Render, AFrameRangeMakesJustThoseFrames) {
+  const std::string folder = shot_folder("range");
+  render(folder, folder + "/out", "--frames 2-3");
+  EXPECT_FALSE(exists(folder + "/out/ball.0001.png"));
+  EXPECT_TRUE(exists(folder + "/out/ball.0002.png"));
+  EXPECT_TRUE(exists(folder + "/out/ball.0003.png"));
+  EXPECT_FALSE(exists(folder + "/out/ball.0004.png"));
+}
+
+TEST(Render, EncodesAMovieOfAllFrames) {
+  const std::string folder = shot_folder("movie");
+  render(folder, folder + "/out", "--set output.movie=true");
+  EXPECT_GT(std::filesystem::file_size(folder + "/out/ball.mp4"), 100U);
+  const Outcome probe = run(fmt::format(
+      "ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames,width,height -of csv=p=0 "
+      "{}/out/ball.mp4",
+      folder));
+  EXPECT_EQ(probe.out, "64,36,4\n") << probe.err;
+}
+
+TEST(Render, StaticFramesThatAreEqualAreTracedOnce) {
+  const std::string folder = shot_folder("static");
+  const json report = render(folder, folder + "/out",
+                             "--set shot.mode=static --set 'body.ball.pull[0].keys=[{frame=1,translate=[0.1,0,0]}]' "
+                             "--set shot.independent=true");
+  EXPECT_EQ(report["pictures"]["traced"], 1);
+  EXPECT_EQ(report["pictures"]["copied"], 3);
+}
+
+}  // namespace
+}  // namespace softreel

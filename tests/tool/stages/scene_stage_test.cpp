@@ -1,0 +1,97 @@
+#include "tool/stages/scene_stage.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace softreel {
+namespace {
+
+CameraSettings framing(double azimuth, double elevation, double margin) {
+  CameraSettings settings;
+  settings.azimuth_deg = azimuth;
+  settings.elevation_deg = elevation;
+  settings.margin = margin;
+  settings.focal_length_mm.keys = {{1, 50.0, Ease::Linear}};
+  return settings;
+}
+
+/// Largest |x| and |y| of the box's corners in the picture, whose half width and height are 1.
+Vec2 extent(const Camera& camera, const Bounds& box, double aspect) {
+  const Vec3 position = camera.position.cast<double>();
+  const Vec3 view = (camera.target.cast<double>() - position).normalized();
+  const Vec3 right = view.cross(Vec3::UnitY()).normalized(), up = right.cross(view);
+  const double half_width = 0.5 * camera.sensor_width_mm / camera.focal_length_mm;
+  Vec2 largest = Vec2::Zero();
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 p((corner & 1 ? box.max : box.min).x(), (corner & 2 ? box.max : box.min).y(),
+                 (corner & 4 ? box.max : box.min).z());
+    const Vec3 d = p - position;
+    const Vec2 at(std::abs(d.dot(right)) / d.dot(view) / half_width,
+                  std::abs(d.dot(up)) / d.dot(view) / half_width * aspect);
+    largest = largest.cwiseMax(at);
+  }
+  return largest;
+}
+
+TEST(CameraAt, FramesABoxOfAnyShapeFromAnySideWithTheMarginAskedFor) {
+  const double aspect = 16.0 / 9.0;
+  for (const Vec3& size : {Vec3(1, 1, 1), Vec3(3, 1, 0.2), Vec3(0.1, 2, 0.1)})
+    for (const double azimuth : {0.0, 30.0, 135.0, 270.0})
+      for (const double elevation : {0.0, 20.0, 60.0}) {
+        const Bounds box{-0.5 * size + Vec3(5, 1, -2), 0.5 * size + Vec3(5, 1, -2)};
+        const Vec2 seen = extent(camera_at(framing(azimuth, elevation, 1.25), 1, box, aspect), box, aspect);
+        EXPECT_NEAR(seen.maxCoeff(), 1 / 1.25, 1e-4) << size.transpose() << " from " << azimuth << ", " << elevation;
+      }
+}
+
+TEST(CameraAt, AzimuthZeroLooksFromTheFront) {
+  const Camera camera = camera_at(framing(0, 0, 1), 1, {Vec3(-1, 0, -1), Vec3(1, 2, 1)}, 1.0);
+  EXPECT_NEAR(camera.position.x(), 0, 1e-5);
+  EXPECT_NEAR(camera.position.y(), 1, 1e-5);
+  EXPECT_GT(camera.position.z(), 1);
+}
+
+TEST(CameraAt, FollowsItsKeys) {
+  CameraSettings settings = framing(0, 0, 1);
+  settings.mode = CameraMode::Place;
+  settings.position.keys = {{1, Vec3(0, 0, 4), Ease::Linear}, {11, Vec3(10, 0, 4), Ease::Linear}};
+  settings.target.keys = {{1, Vec3(0, 0, 0), Ease::Linear}};
+  EXPECT_NEAR(camera_at(settings, 6, {}, 1).position.x(), 5, 1e-6);
+}
+
+TEST(PositionsBetween, LieOnTheLinesBetweenSubSteps) {
+  const std::vector<Vec3> a{Vec3(0, 0, 0)}, b{Vec3(2, 0, 0)}, c{Vec3(2, 6, 0)};
+  const std::vector<const std::vector<Vec3>*> steps{&a, &b, &c};
+  EXPECT_EQ(positions_between(steps, -1)[0], Vec3(0, 0, 0));
+  EXPECT_EQ(positions_between(steps, -0.75)[0], Vec3(1, 0, 0));
+  EXPECT_EQ(positions_between(steps, -0.5)[0], Vec3(2, 0, 0));
+  EXPECT_EQ(positions_between(steps, -0.25)[0], Vec3(2, 3, 0));
+  EXPECT_EQ(positions_between(steps, 0)[0], Vec3(2, 6, 0));
+  EXPECT_EQ(positions_between({&c}, -0.3)[0], Vec3(2, 6, 0)) << "without an earlier state nothing moves";
+}
+
+TEST(PictureKey, KnowsWhatChangesPixelsAndNotTheFrame) {
+  Scene scene;
+  scene.meshes.push_back({"a", {{0, 1, 2}}, {{{Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0)}, {}}}, {}});
+  const RenderParams params;
+  const StageKey key = picture_key(scene, params);
+  Scene moved = scene;
+  moved.meshes[0].times[0].positions[0].x() = 1e-7f;
+  EXPECT_NE(picture_key(moved, params), key);
+  Scene renamed = scene;
+  renamed.meshes[0].name = "b";
+  EXPECT_EQ(picture_key(renamed, params), key);
+  Scene refocused = scene;
+  refocused.camera.focus_distance = 7;
+  EXPECT_EQ(picture_key(refocused, params), key) << "a pinhole has no focus";
+  Scene brighter = scene;
+  brighter.environment.strength = 2;
+  EXPECT_NE(picture_key(brighter, params), key);
+  RenderParams finer = params;
+  finer.samples = 17;
+  EXPECT_NE(picture_key(scene, finer), key);
+}
+
+}  // namespace
+}  // namespace softreel

@@ -1,0 +1,172 @@
+#include "tool/commands/command_line.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "tool/commands/commands.h"
+#include "tool/shot/schema.h"
+
+namespace softreel {
+namespace {
+
+constexpr const char* kFooter =
+    "Exit status: 0 done; 1 the work failed; 2 the input is wrong or a part is not built in; 130 after Ctrl-C.\n"
+    "Fields of shots: softreel fields [PATH]. Examples: the shots in presets/.";
+
+void add_run_options(CLI::App& command, ShotOptions& options) {
+  command.add_option("--set", options.sets, "set a field of the shot, e.g. body.mesh=my.obj (repeatable)")
+      ->option_text("PATH=VALUE")
+      ->expected(1)
+      ->take_all()
+      ->group("Shot");
+  command.add_option("--frames", options.frames, "frames to make: FIRST-LAST or one [all of the shot]")
+      ->option_text("RANGE")
+      ->group("Shot");
+  command.add_option("--output", options.output, "output folder [output.directory of the shot]")
+      ->option_text("DIR")
+      ->group("Files");
+  command.add_option("--cache", options.cache, "folder of stored results [.cache in the output folder]")
+      ->option_text("DIR")
+
+      ->group("Files");
+  command.add_option("--threads", options.threads, "number of threads, 1 to 1024 [all processors]")
+      ->option_text("N")
+
+      ->check(CLI::Range(1, 1024))
+      ->group("Running");
+  command.add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Running");
+  command.add_flag("--json", options.json, "print the closing report as JSON on standard output")->group("Running");
+  command.add_flag("--dry-run", options.dry_run, "say what would be done, with memory and time; do nothing")
+      ->group("Running");
+}
+
+void add_shot_options(CLI::App& command, ShotOptions& options) {
+  command.add_option("shot", options.shot, "shot file (TOML)")->required()->option_text("SHOT");
+  add_run_options(command, options);
+}
+
+/// All parsed options; only those of the chosen subcommand are read.
+struct Parsed {
+  ShotOptions shot;
+  ExportOptions exporting;
+  GoldenOptions golden;
+  BatchOptions batch;
+  InspectOptions inspect;
+  TetrahedralizeOptions tetrahedralize;
+  std::string field;
+};
+
+using Runner = std::function<int()>;
+
+void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
+  CLI::App* render = app.add_subcommand("render", "simulate a shot and trace its pictures and movie");
+  add_shot_options(*render, parsed.shot);
+  render->callback([&] { run = [&parsed] { return run_render(parsed.shot); }; });
+
+  CLI::App* simulate = app.add_subcommand("simulate", "simulate a shot into its cache, without pictures");
+  add_shot_options(*simulate, parsed.shot);
+  simulate->callback([&] { run = [&parsed] { return run_simulate(parsed.shot); }; });
+
+  CLI::App* exporting = app.add_subcommand("export", "write the deformed meshes, in the vertex order of their files");
+  add_shot_options(*exporting, parsed.exporting.shot);
+  exporting->add_option("--format", parsed.exporting.format, "obj | ply | pc2 [obj]")->group("Files");
+  exporting->add_option("--space", parsed.exporting.space, "object (the file's own) | world [object]")->group("Files");
+  exporting->callback([&] { run = [&parsed] { return run_export(parsed.exporting); }; });
+
+  CLI::App* preview = app.add_subcommand("preview", "draw quick lit frames with EGL, without path tracing");
+  add_shot_options(*preview, parsed.shot);
+  preview->callback([&] { run = [&parsed] { return run_preview(parsed.shot); }; });
+
+  CLI::App* golden = app.add_subcommand("golden", "render a shot's golden frames and compare them; status 1 on change");
+  add_shot_options(*golden, parsed.golden.shot);
+  golden->add_option("--reference", parsed.golden.reference, "folder of golden images [golden beside the shot]")
+      ->group("Files");
+  golden->add_flag("--update", parsed.golden.update, "make the rendered frames the golden ones")->group("Running");
+  golden->callback([&] { run = [&parsed] { return run_golden(parsed.golden); }; });
+
+  CLI::App* batch = app.add_subcommand("batch", "render several shots; one that fails stops no other");
+  batch->add_option("shots", parsed.batch.shots, "shot files (TOML)")->required()->option_text("SHOT ...");
+  add_run_options(*batch, parsed.batch.shot);
+  batch->callback([&] { run = [&parsed] { return run_batch(parsed.batch); }; });
+}
+
+void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
+  CLI::App* check = app.add_subcommand("check", "read a shot, its meshes and selections, and say what they hold");
+  add_shot_options(*check, parsed.shot);
+  check->callback([&] { run = [&parsed] { return run_check(parsed.shot); }; });
+
+  CLI::App* inspect = app.add_subcommand("inspect", "say what is in a surface mesh: size, holes, flips, pieces");
+  inspect->add_option("mesh", parsed.inspect.mesh, "surface mesh in any format assimp reads")->required();
+  inspect->add_flag("--json", parsed.inspect.json, "as JSON");
+  inspect->callback([&] { run = [&parsed] { return run_inspect(parsed.inspect); }; });
+
+  CLI::App* tets = app.add_subcommand("tetrahedralize", "fill a surface with tetrahedra and write them");
+  TetrahedralizeOptions& options = parsed.tetrahedralize;
+  tets->add_option("mesh", options.mesh, "surface mesh in any format assimp reads")->required();
+  tets->add_option("-o,--output", options.output, "file to write: .vtu, .msh (Gmsh 2.2) or .mesh (Medit)")->required();
+  CLI::Option* edge = tets->add_option("--edge", options.edge, "long edge of the lattice, in the mesh's unit")
+                          ->check(CLI::PositiveNumber);
+  tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
+      ->check(CLI::Range(10L, 100000000L))
+      ->excludes(edge);
+  tets->add_option("--fit", options.fit, "scale the mesh to this height first, m")->check(CLI::PositiveNumber);
+  tets->add_option("--threads", options.threads, "number of threads [all processors]")->check(CLI::Range(1, 1024));
+  tets->add_flag("--quiet", options.quiet, "print warnings and errors only");
+  tets->add_flag("--json", options.json, "print the report as JSON");
+  tets->callback([&] { run = [&parsed] { return run_tetrahedralize(parsed.tetrahedralize); }; });
+
+  CLI::App* fields = app.add_subcommand("fields", "print the reference of all fields of a shot, or of one");
+  fields->add_option("path", parsed.field, "field, e.g. body.*.pin[].select");
+  fields->callback([&] {
+    run = [&parsed] {
+      std::printf("%s\n", (parsed.field.empty() ? shot_reference() : explain_field(parsed.field)).c_str());
+      return 0;
+    };
+  });
+}
+
+/// What is wrong with the arguments, and where to read on. A first word that is no subcommand gets the nearest one.
+std::string usage_message(const CLI::App& app, const CLI::ParseError& mistake, int argc, char** argv) {
+  const std::string word = argc > 1 ? argv[1] : "";
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), word) != names.end())
+    return fmt::format("{}: {}\n  See softreel {} --help.", word, mistake.what(), word);
+  if (word.empty() || word.starts_with('-'))
+    return fmt::format("{}\n  Accepted: softreel SUBCOMMAND ... with one of {}. See softreel --help.", mistake.what(),
+                       fmt::join(names, ", "));
+  const std::string nearest = nearest_name(word, names);
+  return fmt::format("\"{}\" is no subcommand.\n  {}Accepted: {}. See softreel --help.", word,
+                     nearest.empty() ? "" : fmt::format("Did you mean {}? ", nearest), fmt::join(names, ", "));
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app(
+      "softreel fills surface meshes with tetrahedra, deforms them under keyed pins and pulls, and renders them.",
+      "softreel");
+  app.set_version_flag("--version", version_text());
+  app.footer(kFooter);
+  app.require_subcommand(1);
+  Parsed parsed;
+  Runner run;
+  add_making_commands(app, parsed, run);
+  add_looking_commands(app, parsed, run);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) {  // --help, --version
+    return app.exit(request);
+  } catch (const CLI::ParseError& mistake) {
+    throw input_error(usage_message(app, mistake, argc, argv));
+  }
+  return run();
+}
+
+}  // namespace softreel

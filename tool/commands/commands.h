@@ -1,0 +1,71 @@
+/// The subcommands of softreel. Each takes its parsed options, throws Error, and returns the exit status of its work.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tool/commands/session.h"
+
+namespace softreel {
+
+/// Simulates and renders a shot: pictures, and a movie of all its frames.
+int run_render(const ShotOptions& options);
+
+/// Simulates a shot into the cache.
+int run_simulate(const ShotOptions& options);
+
+/// Prints what run_render would do, with the memory and time it should take.
+int run_plan(const ShotOptions& options);
+
+struct ExportOptions {
+  ShotOptions shot;
+  std::string format = "obj";    ///< obj | ply | pc2
+  std::string space = "object";  ///< object: the file's own space; world: as placed in the scene
+};
+
+/// Writes the deformed surfaces in the vertex order of their files.
+int run_export(const ExportOptions& options);
+
+/// Draws frames by rasterisation, without path tracing.
+int run_preview(const ShotOptions& options);
+
+struct GoldenOptions {
+  ShotOptions shot;
+  std::string reference;  ///< folder of the golden images; empty: "golden" beside the shot
+  bool update = false;
+};
+
+/// Renders the golden frames and compares them; exit status 1 if one changed.
+int run_golden(const GoldenOptions& options);
+
+struct BatchOptions {
+  ShotOptions shot;  ///< its `shot` is not used
+  std::vector<std::string> shots;
+};
+
+/// Renders several shots, each in a process of its own; exit status 1 if one failed.
+int run_batch(const BatchOptions& options);
+
+/// Reads a shot, its meshes and selections, and says what they hold.
+int run_check(const ShotOptions& options);
+
+struct InspectOptions {
+  std::string mesh;
+  bool json = false;
+};
+
+/// Says what is in a surface mesh.
+int run_inspect(const InspectOptions& options);
+
+struct TetrahedralizeOptions {
+  std::string mesh, output;
+  double edge = 0, fit = 0;
+  long tets = 0;
+  int threads = 0;
+  bool quiet = false, json = false;
+};
+
+/// Fills a surface and writes the tetrahedra.
+int run_tetrahedralize(const TetrahedralizeOptions& options);
+
+}  // namespace softreel

@@ -1,0 +1,90 @@
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "tool/commands/commands.h"
+#include "tool/stages/scene_stage.h"
+#include "tool/stages/shot_run.h"
+
+namespace softreel {
+namespace {
+
+/// Measured on 2 cores at 2.6 GHz with the shots of presets/ (README, "How fast"); a plan is right within a factor of
+/// two or so there, and scales with the machine elsewhere.
+constexpr double kStepSecondsPerTet = 4e-6;    ///< one dynamic step, two threads
+constexpr double kStaticStepsPerFrame = 25;    ///< a static frame costs about this many steps
+constexpr double kFillSecondsPerTet = 1.5e-5;  ///< distance, lattice, embedding
+constexpr double kPathsPerSecond = 3e6;        ///< two threads
+constexpr double kBytesPerTet = 1200;          ///< matrix, hierarchy, state
+constexpr double kBytesPerTriangle = 700;      ///< surface, normals, trees
+constexpr double kBytesPerPixel = 48;
+
+struct Plan {
+  double tets = 0, triangles = 0;
+  double fill_seconds = 0, simulate_seconds = 0, render_seconds = 0, bytes = 0;
+};
+
+/// Tetrahedra that a body will have: as asked for, or from the volume of its box where the edge is given (an upper
+/// bound: 12 in each cell of the lattice).
+double expected_tets(const BodySettings& body, const Vec3& size) {
+  if (body.tets > 0) return static_cast<double>(body.tets);
+  return 12 * size.prod() / (body.edge * body.edge * body.edge);
+}
+
+Plan make_plan(const ShotRun& run, const FrameSpan& frames, int threads) {
+  const Shot& shot = run.shot();
+  const double speed = threads / 2.0;
+  Plan plan;
+  for (std::size_t b = 0; b < run.body_count(); ++b) {
+    const LoadedBody& loaded = run.loaded(b);
+    const double tets = expected_tets(shot.bodies[b], used_bounds(loaded.surface).size());
+    plan.tets += tets;
+    plan.triangles += static_cast<double>(loaded.surface.triangles.size());
+    if (!run.context().cache.has("tetrahedra", filled_key(shot.bodies[b], loaded)))
+      plan.fill_seconds += tets * kFillSecondsPerTet / speed;
+  }
+  const int simulated = frames.last - shot.settings.first_frame + 1 + shot.settings.preroll;
+  const double steps = shot.settings.mode == SimulationMode::Static ? kStaticStepsPerFrame : shot.solver.substeps;
+  plan.simulate_seconds = simulated * steps * plan.tets * kStepSecondsPerTet / speed;
+  const double pixels = static_cast<double>(shot.render.params.width) * shot.render.params.height;
+  plan.render_seconds = frames.count() * pixels * shot.render.params.samples / (kPathsPerSecond * speed);
+  plan.bytes = plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle + pixels * kBytesPerPixel;
+  return plan;
+}
+
+}  // namespace
+
+int run_plan(const ShotOptions& options) {
+  ShotOptions silent = options;
+  silent.quiet = true;
+  const Session session(silent);
+  const Shot& shot = session.shot();
+  const FrameSpan frames = session.frames();
+  const ShotRun run(shot, session.context());
+  const SceneStage scenes(run);
+  const Plan plan = make_plan(run, frames, session.context().threads.count());
+  std::printf("%s: would do (nothing is written):\n", shot.settings.name.c_str());
+  for (std::size_t b = 0; b < run.body_count(); ++b) {
+    const bool cached = session.context().cache.has("tetrahedra", filled_key(shot.bodies[b], run.loaded(b)));
+    std::printf("  fill %s: %zu triangles, about %.0f tetrahedra%s\n", shot.bodies[b].name.c_str(),
+                run.loaded(b).surface.triangles.size(),
+                expected_tets(shot.bodies[b], used_bounds(run.loaded(b).surface).size()),
+                cached ? " (in the cache already)" : "");
+  }
+  std::printf("  simulate frames %d-%d (%s); frames that the cache holds are skipped\n",
+              shot.settings.first_frame - shot.settings.preroll, frames.last,
+              shot.settings.mode == SimulationMode::Static ? "static"
+                                                           : fmt::format("{} sub-steps", shot.solver.substeps).c_str());
+  std::printf("  render %d frames of %d x %d at %d samples to %s\n", frames.count(), shot.render.params.width,
+              shot.render.params.height, shot.render.params.samples, shot.output.directory.c_str());
+  std::printf(
+      "  expected, within a factor of two: memory %s; time %s (fill %s, simulate %s, render %s) if nothing is "
+      "there yet\n",
+      format_bytes(plan.bytes).c_str(),
+      format_duration(plan.fill_seconds + plan.simulate_seconds + plan.render_seconds).c_str(),
+      format_duration(plan.fill_seconds).c_str(), format_duration(plan.simulate_seconds).c_str(),
+      format_duration(plan.render_seconds).c_str());
+  return 0;
+}
+
+}  // namespace softreel

@@ -1,0 +1,97 @@
+#include "tool/commands/session.h"
+
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "tool/shot/shot_load.h"
+#include "tool/stages/atomic_file.h"
+
+namespace softreel {
+namespace {
+
+/// A whole number that fills the text; false if it is none.
+bool read_number(std::string_view text, int& value) {
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return code == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+FrameSpan parse_frames(const std::string& text, const Shot& shot) {
+  const FrameSpan all{shot.settings.first_frame, shot.settings.last_frame};
+  if (text.empty()) return all;
+  const auto dash = text.find('-', 1);
+  FrameSpan span;
+  const std::string accepted = fmt::format("Accepted: FIRST-LAST or one frame, within {}-{}.", all.first, all.last);
+  if (!read_number(std::string_view(text).substr(0, dash), span.first) ||
+      !read_number(dash == std::string::npos ? std::string_view(text) : std::string_view(text).substr(dash + 1),
+                   span.last))
+    throw input_error(fmt::format("--frames: \"{}\" is no range of frames.\n  {}", text, accepted));
+  if (span.first > span.last)
+    throw input_error(
+        fmt::format("--frames: \"{}\" is reversed.\n  {} Write {}-{}.", text, accepted, span.last, span.first));
+  if (span.first < all.first || span.last > all.last)
+    throw input_error(fmt::format("--frames: \"{}\" leaves the frames of {}.\n  {} Widen shot.frames to go on.", text,
+                                  shot.path, accepted));
+  return span;
+}
+
+Shot load_shot_for(const ShotOptions& options) {
+  std::vector<Override> overrides;
+  for (const std::string& text : options.sets) overrides.push_back(parse_override(text));
+  Shot shot = load_shot(options.shot, overrides);
+  if (!options.output.empty()) shot.output.directory = options.output;
+  if (options.threads > 0) shot.threads = options.threads;
+  return shot;
+}
+
+std::atomic<bool>& cancellation() {
+  static std::atomic<bool> cancelled{false};
+  return cancelled;
+}
+
+Session::Session(const ShotOptions& options)
+    : options_(options),
+      shot_(load_shot_for(options)),
+      frames_(parse_frames(options.frames, shot_)),
+      console_(options.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0),
+      log_(console_.log()),
+      threads_(shot_.threads),
+      cache_(
+          options.cache.empty() ? (std::filesystem::path(shot_.output.directory) / ".cache").string() : options.cache,
+          log_),
+      context_{threads_, log_, times_, cache_, cancellation()},
+      start_(std::chrono::steady_clock::now()) {}
+
+RunReport Session::report(const std::string& command, const ShotRun& run, bool filled) const {
+  RunReport report;
+  report.command = command;
+  report.shot = shot_.path;
+  report.first_frame = frames_.first;
+  report.last_frame = frames_.last;
+  report.threads = threads_.count();
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  report.bodies = report_bodies(run, filled);
+  report.simulation = run.counts();
+  report.stages = times_.entries();
+  return report;
+}
+
+void Session::finish(const RunReport& report) {
+  console_.end();
+  const std::filesystem::path folder(shot_.output.directory);
+  write_file((folder / (shot_.settings.name + ".resolved.toml")).string(), to_toml(shot_));
+  write_file((folder / (shot_.settings.name + ".report.json")).string(), to_json(report) + "\n");
+  if (options_.json) {
+    std::printf("%s\n", to_json(report).c_str());
+  } else if (!options_.quiet) {
+    std::printf("%s: %s\n%s", report.command.c_str(), shot_.settings.name.c_str(), to_text(report).c_str());
+  }
+}
+
+}  // namespace softreel

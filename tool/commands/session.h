@@ -1,0 +1,70 @@
+/// Options that all shot commands share, and the objects they make: console, threads, cache, cancellation.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tool/report/console.h"
+#include "tool/report/run_report.h"
+#include "tool/shot/shot.h"
+#include "tool/stages/run_context.h"
+
+namespace softreel {
+
+struct ShotOptions {
+  std::string shot;               ///< path of the shot file
+  std::vector<std::string> sets;  ///< "path=value"
+  std::string frames;             ///< "10-20" or "10"; empty: all of the shot
+  std::string output;             ///< folder; empty: the shot's
+  std::string cache;              ///< folder; empty: OUTPUT/.cache
+  int threads = 0;                ///< 0: the shot's
+  bool quiet = false, json = false, dry_run = false;
+};
+
+struct FrameSpan {
+  int first = 0, last = 0;
+  int count() const { return last - first + 1; }
+};
+
+/// "10-20" or "10" within the shot's frames. Throws input_error for anything else, reversed and outside ranges too.
+FrameSpan parse_frames(const std::string& text, const Shot& shot);
+
+/// Reads the shot with its overrides and the options that stand for fields of it.
+Shot load_shot_for(const ShotOptions& options);
+
+/// Set by Ctrl-C; stages ask for it between steps.
+std::atomic<bool>& cancellation();
+
+/// One command's run over one shot. Members are made in order and refer to each other, so a session stays in place.
+class Session {
+ public:
+  explicit Session(const ShotOptions& options);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  const Shot& shot() const { return shot_; }
+  const FrameSpan& frames() const { return frames_; }
+  Console& console() { return console_; }
+  const RunContext& context() const { return context_; }
+
+  /// Fills in what every report has; the caller adds counts and files.
+  RunReport report(const std::string& command, const ShotRun& run, bool filled) const;
+  /// Prints the report (JSON on standard output if asked for), and writes it and the resolved shot beside the output.
+  void finish(const RunReport& report);
+
+ private:
+  ShotOptions options_;
+  Shot shot_;
+  FrameSpan frames_;
+  Console console_;
+  Log log_;
+  Threads threads_;
+  StageTimes times_;
+  Cache cache_;
+  RunContext context_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace softreel

@@ -1,0 +1,95 @@
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "core/mesh/mesh_import.h"
+#include "core/mesh/mesh_repair.h"
+#include "core/mesh/placement.h"
+#include "core/tetmesh/tet_mesh_file.h"
+#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/tetrahedralize.h"
+#include "tool/commands/commands.h"
+#include "tool/stages/atomic_file.h"
+
+namespace softreel {
+namespace {
+
+struct Result {
+  SurfaceMesh surface;
+  TetMesh mesh;
+  TetQuality quality;
+  SurfaceDeviation deviation;
+  double seconds = 0;
+};
+
+/// A format that cannot be written is said before the work.
+void check_extension(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".vtu" || extension == ".msh" || extension == ".mesh") return;
+  throw input_error(
+      fmt::format("-o {}: the format \"{}\" is not known.\n  Accepted: .vtu (VTK), .msh (Gmsh 2.2), "
+                  ".mesh (Medit).",
+                  path, extension));
+}
+
+std::string to_json(const TetrahedralizeOptions& options, const Result& result) {
+  const double diagonal = used_bounds(result.surface).diagonal();
+  const nlohmann::ordered_json json = {{"mesh", options.mesh},
+                                       {"output", options.output},
+                                       {"tets", result.mesh.tets.size()},
+                                       {"nodes", result.mesh.nodes.size()},
+                                       {"edge", result.mesh.lattice.spacing},
+                                       {"volume", result.quality.volume},
+                                       {"min_dihedral_deg", result.quality.min_dihedral},
+                                       {"first_percentile_dihedral_deg", result.quality.first_percentile_dihedral},
+                                       {"max_dihedral_deg", result.quality.max_dihedral},
+                                       {"distance", result.deviation.two_way()},
+                                       {"distance_share_of_diagonal", result.deviation.two_way() / diagonal},
+                                       {"seconds", result.seconds}};
+  return json.dump(1);
+}
+
+void print_text(const TetrahedralizeOptions& options, const Result& result) {
+  const TetQuality& quality = result.quality;
+  std::printf("%s: %zu tetrahedra, %zu nodes, long edge %.6g, volume %.6g\n", options.output.c_str(),
+              result.mesh.tets.size(), result.mesh.nodes.size(), result.mesh.lattice.spacing, quality.volume);
+  std::printf("  dihedral angles: min %.2f, first percentile %.2f, max %.2f degrees\n", quality.min_dihedral,
+              quality.first_percentile_dihedral, quality.max_dihedral);
+  std::printf("  distance to the surface: at most %.4g (%.3f %% of the box diagonal)\n", result.deviation.two_way(),
+              100 * result.deviation.two_way() / used_bounds(result.surface).diagonal());
+  std::printf("  time: %s\n", format_duration(result.seconds).c_str());
+}
+
+}  // namespace
+
+int run_tetrahedralize(const TetrahedralizeOptions& options) {
+  check_extension(options.output);
+  Console console(options.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0);
+  const Log log = console.log();
+  const Threads threads(options.threads);
+  StageTimes times;
+  Result result;
+  result.surface = import_mesh(options.mesh, log);
+  for (const std::string& line : repair_mesh(result.surface)) log.info(line);
+  if (options.fit > 0) apply(place(result.surface, {.fit = options.fit}), result.surface);
+  TetrahedralizeParams params{options.edge, options.tets};
+  if (params.edge == 0 && params.tets == 0) params.tets = 20000;
+  const auto start = std::chrono::steady_clock::now();
+  result.mesh = tetrahedralize(result.surface, params, options.mesh, threads, log, times);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.quality = measure_quality(result.mesh, threads);
+  result.deviation = measure_deviation(result.surface, result.mesh, threads);
+  write_file(options.output, encode_tet_mesh(result.mesh, std::filesystem::path(options.output).extension().string()));
+  if (options.json) {
+    std::printf("%s\n", to_json(options, result).c_str());
+  } else {
+    print_text(options, result);
+  }
+  return 0;
+}
+
+}  // namespace softreel

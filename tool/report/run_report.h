@@ -1,0 +1,43 @@
+/// What a run made, what it skipped, and where the time went; as text for a person and as JSON for a program.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/base/timer.h"
+#include "core/multigrid/multigrid.h"
+#include "tool/stages/shot_run.h"
+
+namespace softreel {
+
+struct BodyReport {
+  std::string name, mesh;
+  std::int64_t vertices = 0, triangles = 0;
+  std::int64_t nodes = 0, tets = 0;
+  bool tets_from_cache = false;
+  std::vector<std::string> facts;
+  std::vector<LevelInfo> levels;
+};
+
+struct RunReport {
+  std::string command, shot;
+  int first_frame = 0, last_frame = 0, threads = 0;
+  double seconds = 0;
+  std::vector<BodyReport> bodies;
+  SimulationCounts simulation;
+  int pictures_traced = 0, pictures_linked = 0, pictures_kept = 0;
+  std::vector<std::string> made;  ///< files or patterns, in words: "out/a.0001.png .. out/a.0096.png"
+  std::map<std::string, StageTimes::Entry> stages;
+};
+
+/// Facts of the run's bodies; those of the tetrahedra only once the bodies are filled.
+std::vector<BodyReport> report_bodies(const ShotRun& run, bool filled);
+
+std::string to_text(const RunReport& report);
+std::string to_json(const RunReport& report);
+
+/// "softreel VERSION" and the versions of what it was built with, for reports and --version.
+std::string version_text();
+
+}  // namespace softreel

@@ -1,0 +1,53 @@
+# Shared by tool/run and tool/test: installs what is missing and configures build/. Sourced, not run.
+
+softreel_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+# Installs the packages of tool/packages.txt that are missing; asks the package manager for nothing if none is.
+softreel_install() {
+  local missing=() package
+  while read -r package; do
+    case "$package" in '' | '#'*) continue ;; esac
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done <"$softreel_root/tool/packages.txt"
+  [ ${#missing[@]} -eq 0 ] && return 0
+  echo "installing ${#missing[@]} packages: ${missing[*]}" >&2
+  local become=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || {
+      echo "softreel needs these packages. As root: apt-get install ${missing[*]}" >&2
+      return 2
+    }
+    become=(sudo)
+  fi
+  "${become[@]}" apt-get update -qq >&2
+  "${become[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
+    >/dev/null || {
+    echo "apt-get could not install: ${missing[*]}" >&2
+    return 2
+  }
+}
+
+# Configures a build folder: softreel_configure FOLDER [CMake options ...]. Without options, the one cache of build/.
+softreel_configure() {
+  local folder=$1
+  shift
+  [ $# -gt 0 ] || set -- -DSOFTREEL_WITH_EMBREE=ON -DSOFTREEL_WITH_EGL=ON -DSOFTREEL_WITH_OPENVDB=ON \
+    -DSOFTREEL_WITH_ASSIMP=ON -DSOFTREEL_BUILD_TESTS=ON -DSOFTREEL_BUILD_BENCHMARKS=ON -DSOFTREEL_WERROR=ON \
+    -DCMAKE_BUILD_TYPE=Release
+  local log
+  log=$(cmake -S "$softreel_root" -B "$softreel_root/$folder" -G Ninja "$@" 2>&1) || {
+    echo "$log" >&2
+    return 1
+  }
+}
+
+# Builds targets of a folder: softreel_build FOLDER TARGET ... (quiet unless it fails).
+softreel_build() {
+  local folder=$1 log
+  shift
+  echo "building $folder: $*" >&2
+  log=$(cmake --build "$softreel_root/$folder" --target "$@" 2>&1) || {
+    echo "$log" | tail -n 60 >&2
+    return 1
+  }
+}

@@ -1,0 +1,238 @@
+#include "tool/stages/body_stage.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/base/check.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/mesh_import.h"
+#include "core/mesh/mesh_repair.h"
+#include "core/tetmesh/tetrahedralize.h"
+#include "tool/stages/bytes.h"
+
+namespace softreel {
+namespace {
+
+/// Raised whenever the same surface would give other tetrahedra or another embedding.
+constexpr const char* kFillVersion = "tetrahedra 1";
+
+PlacementParams placement_params(const BodySettings& body) {
+  PlacementParams params;
+  using Up = PlacementParams::Up;
+  params.up = body.up == UpAxis::X ? Up::X : body.up == UpAxis::Z ? Up::Z : Up::Y;
+  params.fit = body.fit;
+  params.scale = body.scale;
+  params.translate = body.translate;
+  params.rotate_rad = body.rotate_deg * (std::numbers::pi / 180);
+  return params;
+}
+
+std::vector<std::uint8_t> pack(const FilledBody& filled) {
+  ByteWriter out;
+  out.put(filled.mesh.lattice.spacing);
+  for (int k = 0; k < 3; ++k) out.put(filled.mesh.lattice.origin[k]);
+  out.put_array(filled.mesh.nodes);
+  out.put_array(filled.mesh.tets);
+  out.put_array(filled.embedding.elements);
+  out.put_array(filled.embedding.weights);
+  return out.take();
+}
+
+void unpack(std::span<const std::uint8_t> bytes, FilledBody& filled) {
+  ByteReader in(bytes);
+  filled.mesh.lattice.spacing = in.get<double>();
+  for (int k = 0; k < 3; ++k) filled.mesh.lattice.origin[k] = in.get<double>();
+  filled.mesh.nodes = in.get_array<Vec3>();
+  filled.mesh.tets = in.get_array<Tet>();
+  filled.embedding.elements = in.get_array<Index>();
+  filled.embedding.weights = in.get_array<std::array<double, 4>>();
+}
+
+const MaterialSettings& find_material(const Shot& shot, const std::string& name) {
+  const auto found = shot.materials.find(name);
+  CHECK(found != shot.materials.end());  // the shot was checked when it was read
+  return found->second;
+}
+
+std::vector<Vec3> element_centroids(const TetMesh& mesh) {
+  std::vector<Vec3> centroids;
+  centroids.reserve(mesh.tets.size());
+  for (const Tet& tet : mesh.tets) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index node : tet) sum += mesh.nodes[static_cast<std::size_t>(node)];
+    centroids.push_back(0.25 * sum);
+  }
+  return centroids;
+}
+
+}  // namespace
+
+namespace {
+
+/// Runs `work`; its errors get the place of the field that asked for it.
+template <typename Work>
+auto at_field(const Origin& origin, const std::string& field, Work work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(error.kind(), fmt::format("{}: {}: {}", to_string(origin), field, error.what()));
+  }
+}
+
+}  // namespace
+
+LoadedBody load_body(const BodySettings& body, const RunContext& context) {
+  const ScopedStage stage(context.times, "load");
+  const std::string field = fmt::format("body.{}.mesh", body.name);
+  LoadedBody loaded;
+  loaded.file_mesh = at_field(body.mesh_origin, field, [&] { return import_mesh(body.mesh, context.log); });
+  const MeshFacts facts = check_mesh(loaded.file_mesh);
+  loaded.facts = describe(facts);
+  for (std::string& line : repair_mesh(loaded.file_mesh)) loaded.facts.push_back(std::move(line));
+  if (loaded.file_mesh.triangles.empty())
+    throw input_error(fmt::format("{}: {}: no usable triangle is left.\n  Accepted: a surface that encloses a volume.",
+                                  to_string(body.mesh_origin), body.mesh));
+  loaded.placement = at_field(body.mesh_origin, field, [&] { return place(loaded.file_mesh, placement_params(body)); });
+  loaded.surface = loaded.file_mesh;
+  apply(loaded.placement, loaded.surface);
+  loaded.key = KeyHasher("surface 1").add(loaded.surface.positions).add(loaded.surface.triangles).key();
+  return loaded;
+}
+
+StageKey filled_key(const BodySettings& body, const LoadedBody& loaded) {
+  return KeyHasher(kFillVersion).add(loaded.key).add(body.edge).add(body.tets).key();
+}
+
+FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const RunContext& context) {
+  FilledBody filled;
+  filled.key = filled_key(body, loaded);
+  filled.normals = vertex_normals(loaded.surface, loaded.surface.positions);
+  if (const auto bytes = context.cache.load("tetrahedra", filled.key)) {
+    unpack(*bytes, filled);
+    filled.from_cache = true;
+    return filled;
+  }
+  filled.mesh =
+      tetrahedralize(loaded.surface, {body.edge, body.tets}, body.name, context.threads, context.log, context.times);
+  context.stop_if_cancelled();
+  {
+    const ScopedStage stage(context.times, "tetrahedralize/embed");
+    filled.embedding = embed_points(loaded.surface.positions, filled.normals, filled.mesh, context.threads);
+  }
+  context.cache.store("tetrahedra", filled.key, pack(filled));
+  return filled;
+}
+
+namespace {
+
+/// Keys in box units to metres: translations in heights of the box, pivots in its coordinates.
+Track<Transform> keys_in_meters(Track<Transform> track, bool in_box, bool pivot_given, const Bounds& box,
+                                const Vec3& centroid) {
+  for (Key<Transform>& key : track.keys) {
+    if (in_box) {
+      key.value.translate *= box.size().y();
+      key.value.pivot = box.min + key.value.pivot.cwiseProduct(box.size());
+    }
+    if (!pivot_given) key.value.pivot = centroid;
+  }
+  return track;
+}
+
+std::vector<Index> select_or_fail(const Selection& selection, const SurfaceMesh& surface, const Origin& origin,
+                                  const std::string& field) {
+  std::vector<Index> points = at_field(origin, field + ".select", [&] { return select_points(selection, surface); });
+  if (!points.empty()) return points;
+  const Bounds box = used_bounds(surface);
+  throw input_error(fmt::format(
+      "{}: {}.select takes no point of the surface.\n  The body reaches from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, "
+      "{:.4g}, {:.4g}) m. Accepted: a selection that takes at least one vertex; enlarge it, or use unit = \"box\".",
+      to_string(origin), field, box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()));
+}
+
+Vec3 centroid_of(const std::vector<Index>& points, const SurfaceMesh& surface) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index p : points) sum += surface.positions[static_cast<std::size_t>(p)];
+  return sum / static_cast<double>(points.size());
+}
+
+/// Weights that fall smoothly to zero at `falloff` from the centre of the selection, or equal ones; sum 1.
+std::vector<double> pull_weights(const std::vector<Index>& points, const SurfaceMesh& surface, double falloff,
+                                 const Vec3& center) {
+  std::vector<double> weights(points.size(), 1.0);
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (falloff > 0) {
+      const double distance = (surface.positions[static_cast<std::size_t>(points[i])] - center).norm();
+      weights[i] = distance < falloff ? 1 - eased(Ease::Smooth, distance / falloff) : 0;
+    }
+    sum += weights[i];
+  }
+  if (sum > 0)
+    for (double& weight : weights) weight /= sum;
+  return sum > 0 ? weights : std::vector<double>{};
+}
+
+}  // namespace
+
+void resolve_constraints(const BodySettings& body, const SurfaceMesh& surface, std::vector<Pin>& pins,
+                         std::vector<Pull>& pulls) {
+  const Bounds box = used_bounds(surface);
+  for (std::size_t i = 0; i < body.pins.size(); ++i) {
+    const PinSettings& settings = body.pins[i];
+    const std::string field = fmt::format("body.{}.pin[{}]", body.name, i);
+    Pin pin{fmt::format("{} ({})", field, to_string(settings.origin)), {}, {}, settings.active};
+    pin.points = select_or_fail(settings.select, surface, settings.origin, field);
+    pin.track = keys_in_meters(settings.keys, settings.keys_in_box, settings.pivot_given, box,
+                               centroid_of(pin.points, surface));
+    pins.push_back(std::move(pin));
+  }
+  for (std::size_t i = 0; i < body.pulls.size(); ++i) {
+    const PullSettings& settings = body.pulls[i];
+    const std::string field = fmt::format("body.{}.pull[{}]", body.name, i);
+    Pull pull;
+    pull.name = fmt::format("{} ({})", field, to_string(settings.origin));
+    pull.points = select_or_fail(settings.select, surface, settings.origin, field);
+    const Vec3 center = centroid_of(pull.points, surface);
+    pull.weights = pull_weights(pull.points, surface, settings.falloff, center);
+    if (pull.weights.empty())
+      throw input_error(
+          fmt::format("{}: {}.falloff = {} m reaches no selected point.\n  Accepted: more than the "
+                      "distance from the selection's centre to its nearest point. Enlarge it.",
+                      to_string(settings.origin), field, settings.falloff));
+    pull.track = keys_in_meters(settings.keys, settings.keys_in_box, settings.pivot_given, box, center);
+    pull.stiffness = settings.stiffness;
+    pull.max_force = settings.max_force;
+    pull.active = settings.active;
+    pulls.push_back(std::move(pull));
+  }
+}
+
+BodyModel make_body_model(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
+                          const FilledBody& filled) {
+  BodyModel model;
+  model.name = body.name;
+  model.mesh = filled.mesh;
+  model.surface_points = loaded.surface.positions;
+  model.embedding = filled.embedding;
+  model.gravity = shot.gravity;
+  const ElementMaterial base = find_material(shot, body.material).physics;
+  model.materials.assign(filled.mesh.tets.size(), base);
+  const std::vector<Vec3> centroids = element_centroids(filled.mesh);
+  for (std::size_t i = 0; i < body.regions.size(); ++i) {
+    const RegionSettings& region = body.regions[i];
+    const std::string field = fmt::format("body.{}.region[{}]", body.name, i);
+    select_or_fail(region.select, loaded.surface, region.origin, field);
+    const std::vector<bool> inside = contains(region.select, loaded.surface, centroids);
+    for (std::size_t e = 0; e < inside.size(); ++e) {
+      if (!inside[e]) continue;
+      if (region.material) model.materials[e] = find_material(shot, *region.material).physics;
+      if (region.stiffness) model.materials[e].youngs_modulus = base.youngs_modulus * *region.stiffness;
+    }
+  }
+  resolve_constraints(body, loaded.surface, model.pins, model.pulls);
+  return model;
+}
+
+}  // namespace softreel

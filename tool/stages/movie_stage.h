@@ -1,0 +1,16 @@
+/// The frames as a movie, encoded by the ffmpeg program.
+#pragma once
+
+#include <string>
+
+#include "tool/shot/shot.h"
+#include "tool/stages/outputs.h"
+#include "tool/stages/run_context.h"
+
+namespace softreel {
+
+/// Encodes the PNG frames [first, last] to DIR/SHOT.mp4 (H.264); nothing to do if it is there, made of the same frames.
+/// Returns its path. Throws work_error if ffmpeg is missing or fails, with what it said.
+std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, const RunContext& context);
+
+}  // namespace softreel

@@ -1,0 +1,69 @@
+#include "tool/stages/simulate_key.h"
+
+namespace softreel {
+namespace {
+
+/// Raised whenever the same inputs would give other frames.
+constexpr const char* kSimulationVersion = "simulation 1";
+
+void add(KeyHasher& key, const Transform& t) {
+  key.add(t.translate).add(t.rotate).add(t.scale);
+  // A pivot that nothing turns or scales about has no effect.
+  if (!t.rotate.isZero(0) || t.scale != Vec3::Ones()) key.add(t.pivot);
+}
+
+/// An inactive constraint has no value: its keys may change freely.
+void add_constraints(KeyHasher& key, const BodyModel& model, double frame) {
+  for (const Pin& pin : model.pins) {
+    const bool active = is_active(pin.active, frame);
+    key.add(active);
+    if (active) add(key, pin.track.at(frame));
+  }
+  for (const Pull& pull : model.pulls) {
+    const double stiffness = is_active(pull.active, frame) ? pull.stiffness.at(frame) : 0.0;
+    key.add(stiffness);
+    if (stiffness > 0) add(key, pull.track.at(frame));
+  }
+}
+
+void add_materials(KeyHasher& key, const std::vector<ElementMaterial>& materials) {
+  for (const ElementMaterial& m : materials)
+    key.add(m.youngs_modulus).add(m.poisson_ratio).add(m.density).add(m.damping_mass).add(m.damping_stiffness);
+}
+
+}  // namespace
+
+StageKey simulation_base_key(const Shot& shot, const BodyModel& model, const StageKey& filled_key) {
+  KeyHasher key(kSimulationVersion);
+  key.add(filled_key).add(model.gravity).add(shot.settings.mode);
+  const SolverParams& solver = shot.solver;
+  key.add(solver.rotation).add(solver.dilatation).add(solver.max_iterations);
+  if (shot.settings.mode == SimulationMode::Dynamic) {
+    key.add(shot.settings.fps).add(solver.substeps).add(solver.tolerance).add(shot.settings.start);
+  } else {
+    key.add(shot.settings.independent);
+  }
+  if (shot.settings.mode == SimulationMode::Static || shot.settings.start == StartState::Equilibrium)
+    key.add(solver.force_tolerance).add(solver.max_newton_iterations);
+  key.add(solver.multigrid.galerkin);
+  add_materials(key, model.materials);
+  for (const Pin& pin : model.pins) key.add(pin.points);
+  for (const Pull& pull : model.pulls) key.add(pull.points).add(pull.weights).add(pull.max_force);
+  return key.key();
+}
+
+StageKey frame_key(const Shot& shot, const BodyModel& model, const StageKey& previous, int frame, bool is_start) {
+  KeyHasher key("frame");
+  key.add(previous);
+  if (is_start && shot.settings.mode == SimulationMode::Dynamic && shot.settings.start == StartState::Rest)
+    return key.key();
+  if (is_start || shot.settings.mode == SimulationMode::Static) {
+    add_constraints(key, model, frame);
+    return key.key();
+  }
+  for (int s = 1; s <= shot.solver.substeps; ++s)
+    add_constraints(key, model, frame - 1 + static_cast<double>(s) / shot.solver.substeps);
+  return key.key();
+}
+
+}  // namespace softreel
