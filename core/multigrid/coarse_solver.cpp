@@ -48,6 +48,27 @@ std::vector<Index> elimination_order(const BlockPattern& pattern) {
   return order;
 }
 
+/// First node, by place, of the envelope of each place.
+std::vector<Index> envelope(const BlockPattern& pattern, const std::vector<Index>& order,
+                            const std::vector<Index>& place) {
+  std::vector<Index> first;
+  for (std::size_t p = 0; p < order.size(); ++p) {
+    const auto row = static_cast<std::size_t>(order[p]);
+    first.push_back(static_cast<Index>(p));
+    for (std::int64_t b = pattern.row_offsets[row]; b < pattern.row_offsets[row + 1]; ++b) {
+      const Index column = pattern.column_indices[static_cast<std::size_t>(b)];
+      first.back() = std::min(first.back(), place[static_cast<std::size_t>(column)]);
+    }
+  }
+  return first;
+}
+
+std::vector<Index> inverted(const std::vector<Index>& order) {
+  std::vector<Index> place(order.size());
+  for (std::size_t p = 0; p < order.size(); ++p) place[static_cast<std::size_t>(order[p])] = static_cast<Index>(p);
+  return place;
+}
+
 /// Dot product in 8 lanes: the order of summation is fixed by the length alone.
 double dot(const double* a, const double* b, std::int64_t n) {
   using Lanes = Eigen::Array<double, 8, 1>;
@@ -61,22 +82,28 @@ double dot(const double* a, const double* b, std::int64_t n) {
 
 }  // namespace
 
+double factor_work(const BlockPattern& pattern) {
+  const std::vector<Index> order = elimination_order(pattern);
+  const std::vector<Index> first = envelope(pattern, order, inverted(order));
+  double work = 0;
+  for (std::size_t p = 0; p < first.size(); ++p) {
+    const double width = 3.0 * (static_cast<double>(p) - first[p] + 1);
+    work += 3 * 0.5 * width * width;
+  }
+  return work;
+}
+
 CoarseSolver::CoarseSolver(const BlockPattern& pattern) {
   const std::vector<Index> order = elimination_order(pattern);
-  place_.resize(order.size());
-  for (std::size_t p = 0; p < order.size(); ++p) place_[static_cast<std::size_t>(order[p])] = static_cast<Index>(p);
+  place_ = inverted(order);
+  const std::vector<Index> first = envelope(pattern, order, place_);
   std::int64_t size = 0;
-  for (std::size_t p = 0; p < order.size(); ++p) {
-    const auto row = static_cast<std::size_t>(order[p]);
-    auto first = static_cast<Index>(p);
-    for (std::int64_t b = pattern.row_offsets[row]; b < pattern.row_offsets[row + 1]; ++b)
-      first = std::min(first, place_[static_cast<std::size_t>(pattern.column_indices[static_cast<std::size_t>(b)])]);
+  for (std::size_t p = 0; p < order.size(); ++p)
     for (Index k = 0; k < 3; ++k) {
-      first_.push_back(3 * first);
+      first_.push_back(3 * first[p]);
       row_offsets_.push_back(size);
-      size += 3 * static_cast<Index>(p) + k - 3 * first + 1;
+      size += 3 * static_cast<Index>(p) + k - 3 * first[p] + 1;
     }
-  }
   factor_.resize(static_cast<std::size_t>(size));
   inverse_pivots_.resize(first_.size());
   work_.resize(first_.size());

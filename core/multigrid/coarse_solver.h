@@ -12,6 +12,9 @@
 
 namespace softreel {
 
+/// Multiply-adds that factoring a matrix of this pattern takes.
+double factor_work(const BlockPattern& pattern);
+
 class CoarseSolver {
  public:
   explicit CoarseSolver(const BlockPattern& pattern);

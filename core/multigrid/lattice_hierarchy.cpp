@@ -7,12 +7,17 @@
 #include <numeric>
 
 #include "core/base/check.h"
+#include "core/multigrid/coarse_solver.h"
 
 namespace softreel {
 namespace {
 
 /// Coarsening that keeps more nodes than this share ends the hierarchy: further levels would not pay.
 constexpr double kLeastReduction = 0.8;
+
+/// A level is the last if factoring it takes at most so many multiply-adds a block of the mesh's matrix: then it costs
+/// less than the iterations it saves (slender and thin bodies, which coarse lattices bend badly).
+constexpr double kCheapFactorWork = 100;
 
 /// Lattice coordinates are kept far inside the range of lattice_key.
 constexpr double kMaxLatticeCoordinate = 500000;
@@ -53,16 +58,18 @@ LatticeFrame finest_frame(const TetMesh& mesh) {
   return frame;
 }
 
-/// Young's modulus of the stiffest element around each node; empty if all are alike.
-std::vector<double> node_stiffness(const TetMesh& mesh, std::span<const double> element_stiffness) {
+/// Young's modulus of the stiffest element with both nodes, per block; empty if all are alike.
+std::vector<double> block_stiffness(const TetMesh& mesh, std::span<const double> element_stiffness,
+                                    const BlockPattern& pattern) {
   if (element_stiffness.empty()) return {};
   CHECK(element_stiffness.size() == mesh.tets.size());
-  std::vector<double> stiffest(mesh.nodes.size(), 0.0);
+  std::vector<double> stiffest(static_cast<std::size_t>(pattern.blocks()), 0.0);
   for (std::size_t e = 0; e < mesh.tets.size(); ++e)
-    for (const Index node : mesh.tets[e]) {
-      double& value = stiffest[static_cast<std::size_t>(node)];
-      value = std::max(value, element_stiffness[e]);
-    }
+    for (const Index i : mesh.tets[e])
+      for (const Index j : mesh.tets[e]) {
+        double& value = stiffest[static_cast<std::size_t>(pattern.find(i, j))];
+        value = std::max(value, element_stiffness[e]);
+      }
   return stiffest;
 }
 
@@ -160,13 +167,17 @@ struct PlainLevel {
 std::vector<PlainLevel> coarsen_repeatedly(PlainLevel finest, LatticeFrame frame, const MultigridParams& params) {
   std::vector<PlainLevel> levels;
   levels.push_back(std::move(finest));
+  const double cheap = kCheapFactorWork * static_cast<double>(levels.front().pattern.blocks());
   while (levels.back().pattern.rows() > params.bottom_nodes) {
     PlainLevel& fine = levels.back();
+    if (levels.size() > 1 && factor_work(fine.pattern) <= cheap) break;
     frame.spacing *= 2;
     Coarsening coarse = coarsen(fine.nodes, fine.pattern, frame, {params.dropped_weight, params.stiffness_contrast});
     if (static_cast<double>(coarse.nodes.positions.size()) > kLeastReduction * fine.pattern.rows()) break;
     fine.prolongation = std::move(coarse.prolongation);
     BlockPattern pattern = galerkin_pattern(fine.pattern, transpose(fine.prolongation), fine.prolongation);
+    coarse.nodes.block_stiffness =
+        restrict_stiffness(fine.nodes.block_stiffness, fine.pattern, fine.prolongation, pattern);
     levels.push_back({std::move(coarse.nodes), std::move(pattern), {}});
   }
   return levels;
@@ -191,7 +202,7 @@ LatticeHierarchy build_lattice_hierarchy(const TetMesh& mesh, std::span<const do
   CHECK(!mesh.nodes.empty());
   CHECK(pattern.rows() == static_cast<Index>(mesh.nodes.size()));
   const std::vector<PlainLevel> plain = coarsen_repeatedly(
-      {{mesh.nodes, node_stiffness(mesh, element_stiffness)}, pattern, {}}, finest_frame(mesh), params);
+      {{mesh.nodes, block_stiffness(mesh, element_stiffness, pattern)}, pattern, {}}, finest_frame(mesh), params);
   LatticeHierarchy hierarchy;
   std::vector<std::vector<Index>> orders, color_offsets(plain.size());
   for (std::size_t h = 0; h < plain.size(); ++h) orders.push_back(order_by_color(plain[h].pattern, color_offsets[h]));

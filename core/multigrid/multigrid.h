@@ -26,9 +26,9 @@ struct MultigridParams {
   GalerkinMethod galerkin = GalerkinMethod::Gather;  ///< how R K R^T is formed; all agree to round-off
   CycleKind coarse_cycle = CycleKind::W;             ///< below the finest level, which always takes one V
   int sweeps = 1;                                    ///< symmetric Gauss-Seidel sweeps before and after
-  int bottom_nodes = 150;                            ///< at most this many nodes on the level that Cholesky solves
-  double dropped_weight = 0.1;                       ///< transfer weights below are dropped, the rest renormalised
-  double stiffness_contrast = 10;                    ///< coarse nodes are copied per side of an edge of more contrast
+  int bottom_nodes = 150;          ///< a level of at most this many nodes goes to Cholesky; slender ones sooner
+  double dropped_weight = 0.1;     ///< transfer weights below are dropped, the rest renormalised
+  double stiffness_contrast = 10;  ///< coarse nodes are copied per side of an edge of more contrast
 };
 
 /// One level as the report shows it.

@@ -35,7 +35,11 @@ void add_dependences(const LatticeFrame& frame, const Vec3& point, Index fine, d
 class PartFinder {
  public:
   PartFinder(const LevelNodes& fine, const BlockPattern& pattern, double contrast)
-      : fine_(fine), pattern_(pattern), contrast_(contrast), place_(fine.positions.size(), -1) {}
+      : fine_(fine), pattern_(pattern), contrast_(contrast), place_(fine.positions.size(), -1) {
+    if (fine.block_stiffness.empty()) return;
+    for (Index i = 0; i < pattern.rows(); ++i)
+      node_stiffness_.push_back(fine.block_stiffness[static_cast<std::size_t>(pattern.find(i, i))]);
+  }
 
   /// Sets `coarse` of each dependence to first + the number of its part, numbered by first node; returns the count.
   /// The dependences are those of one lattice node, ordered by fine node.
@@ -61,22 +65,24 @@ class PartFinder {
       for (std::int64_t b = pattern_.row_offsets[node]; b < pattern_.row_offsets[node + 1]; ++b) {
         const auto neighbor = static_cast<std::size_t>(pattern_.column_indices[static_cast<std::size_t>(b)]);
         const Index place = place_[neighbor];
-        if (place < 0 || group[static_cast<std::size_t>(place)].coarse >= 0 || separated(node, neighbor)) continue;
+        if (place < 0 || group[static_cast<std::size_t>(place)].coarse >= 0 || separated(node, neighbor, b)) continue;
         group[static_cast<std::size_t>(place)].coarse = part;
         open_.push_back(place);
       }
     }
   }
 
-  bool separated(std::size_t a, std::size_t b) const {
-    if (fine_.stiffness.empty()) return false;
-    const auto [low, high] = std::minmax(fine_.stiffness[a], fine_.stiffness[b]);
-    return high > contrast_ * low;
+  /// Whether the edge a-b, block `block`, is much softer than what it would join.
+  bool separated(std::size_t a, std::size_t b, std::int64_t block) const {
+    if (node_stiffness_.empty()) return false;
+    const double stiffer_end = std::max(node_stiffness_[a], node_stiffness_[b]);
+    return stiffer_end > contrast_ * fine_.block_stiffness[static_cast<std::size_t>(block)];
   }
 
   const LevelNodes& fine_;
   const BlockPattern& pattern_;
   double contrast_;
+  std::vector<double> node_stiffness_;
   std::vector<Index> place_;  ///< of each fine node in the present group, -1 outside
   std::vector<Index> open_;
 };
@@ -111,7 +117,7 @@ WeightMatrix make_restriction(std::vector<Dependence>& all, Index coarse_nodes, 
 
 Coarsening coarsen(const LevelNodes& fine, const BlockPattern& pattern, const LatticeFrame& frame,
                    const CoarseningParams& params) {
-  if (!fine.stiffness.empty()) CHECK(fine.stiffness.size() == fine.positions.size());
+  if (!fine.block_stiffness.empty()) CHECK(static_cast<std::int64_t>(fine.block_stiffness.size()) == pattern.blocks());
   std::vector<Dependence> all = find_dependences(fine, frame, params.dropped_weight);
   PartFinder finder(fine, pattern, params.stiffness_contrast);
   Coarsening result;
@@ -123,14 +129,28 @@ Coarsening coarsen(const LevelNodes& fine, const BlockPattern& pattern, const La
     result.nodes.positions.resize(static_cast<std::size_t>(count), lattice_position(frame, all[begin].corner));
     begin = end;
   }
-  if (!fine.stiffness.empty()) {
-    result.nodes.stiffness.assign(static_cast<std::size_t>(count), 0.0);
-    for (const Dependence& d : all) {
-      double& stiffest = result.nodes.stiffness[static_cast<std::size_t>(d.coarse)];
-      stiffest = std::max(stiffest, fine.stiffness[static_cast<std::size_t>(d.fine)]);
-    }
-  }
   result.prolongation = transpose(make_restriction(all, count, static_cast<Index>(fine.positions.size())));
+  return result;
+}
+
+std::vector<double> restrict_stiffness(const std::vector<double>& block_stiffness, const BlockPattern& pattern,
+                                       const WeightMatrix& prolongation, const BlockPattern& coarse_pattern) {
+  if (block_stiffness.empty()) return {};
+  std::vector<double> result(static_cast<std::size_t>(coarse_pattern.blocks()), 0.0);
+  const auto parents = [&](std::size_t node) {
+    return std::span(prolongation.column_indices)
+        .subspan(static_cast<std::size_t>(prolongation.row_offsets[node]),
+                 static_cast<std::size_t>(prolongation.row_offsets[node + 1] - prolongation.row_offsets[node]));
+  };
+  for (std::size_t l = 0; l < static_cast<std::size_t>(pattern.rows()); ++l)
+    for (std::int64_t b = pattern.row_offsets[l]; b < pattern.row_offsets[l + 1]; ++b) {
+      const auto k = static_cast<std::size_t>(pattern.column_indices[static_cast<std::size_t>(b)]);
+      for (const Index i : parents(l))
+        for (const Index j : parents(k)) {
+          double& stiffest = result[static_cast<std::size_t>(coarse_pattern.find(i, j))];
+          stiffest = std::max(stiffest, block_stiffness[static_cast<std::size_t>(b)]);
+        }
+    }
   return result;
 }
 

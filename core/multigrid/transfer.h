@@ -12,10 +12,12 @@
 
 namespace softreel {
 
-/// What coarsening knows of a level's nodes.
+/// What coarsening knows of a level.
 struct LevelNodes {
-  std::vector<Vec3> positions;    ///< rest positions, m
-  std::vector<double> stiffness;  ///< Young's modulus of the stiffest element around, Pa; empty: homogeneous
+  std::vector<Vec3> positions;  ///< rest positions, m
+  /// Young's modulus, Pa, per block of the level's pattern: of the stiffest element that has both nodes; on the
+  /// diagonal, of the stiffest around the node. Empty: homogeneous.
+  std::vector<double> block_stiffness;
 };
 
 struct CoarseningParams {
@@ -33,11 +35,16 @@ struct Coarsening {
 ///
 /// A fine node depends on the corners of the lattice tetrahedron that contains its rest position, with barycentric
 /// weights. A corner becomes one coarse node per connected part of the fine nodes that depend on it, where connected
-/// means: by edges of `pattern` that do not cross a stiffness contrast. So two legs that pass the same corner, or the
-/// two sides of a hard inclusion, do not share a coarse node.
-/// Coarse nodes are ordered by lattice position, copies by their first fine node.
+/// means: by edges of `pattern` that are not much softer than an end. So two legs that pass the same corner do not
+/// share a coarse node, nor do a hard inclusion and the flesh around it, nor two inclusions with a layer of flesh
+/// between. Coarse nodes are ordered by lattice position, copies by their first fine node. Stiffnesses are left empty:
+/// they need the coarse pattern (restrict_stiffness).
 Coarsening coarsen(const LevelNodes& fine, const BlockPattern& pattern, const LatticeFrame& frame,
                    const CoarseningParams& params);
+
+/// Stiffness per block of `coarse_pattern` = galerkin_pattern(pattern, R, R^T): the largest of those it gathers.
+std::vector<double> restrict_stiffness(const std::vector<double>& block_stiffness, const BlockPattern& pattern,
+                                       const WeightMatrix& prolongation, const BlockPattern& coarse_pattern);
 
 /// coarse = R fine.
 template <typename Scalar>

@@ -1,5 +1,5 @@
 // The parts that no matrix value changes: coarse nodes, transfer weights, colours, levels.
-#include <algorithm>
+#include <functional>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -88,15 +88,33 @@ TEST(Coarsen, CopiesNodesBetweenLegsThatDoNotTouch) {
   EXPECT_GT(shared_nodes(joined, coarsen_once(joined, {}), 1.5), 0);
 }
 
+/// Per block, 1 or `factor` where an element with its centre at `stiff` has both nodes.
+std::vector<double> stiffness_where(const TetMesh& mesh, double factor, const std::function<bool(const Vec3&)>& stiff) {
+  const BlockPattern pattern = pattern_of(mesh);
+  std::vector<double> values(static_cast<std::size_t>(pattern.blocks()), 1);
+  for (const Tet& tet : mesh.tets) {
+    Vec3 center = Vec3::Zero();
+    for (const Index node : tet) center += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
+    if (!stiff(center)) continue;
+    for (const Index i : tet)
+      for (const Index j : tet) values[static_cast<std::size_t>(pattern.find(i, j))] = factor;
+  }
+  return values;
+}
+
 TEST(Coarsen, CopiesNodesPerSideOfAStiffnessContrast) {
   const TetMesh mesh = make_box({6, 2, 2}, 1.0);
-  const auto stiffness = [&](double factor) {
-    std::vector<double> values;
-    for (const Vec3& x : mesh.nodes) values.push_back(x[0] < 2.9 ? factor : 1);
-    return values;
-  };
-  EXPECT_EQ(shared_nodes(mesh, coarsen_once(mesh, {}, stiffness(100)), 2.9), 0);
-  EXPECT_GT(shared_nodes(mesh, coarsen_once(mesh, {}, stiffness(5)), 2.9), 0);
+  // The stiff half ends at x = 3 with pyramids whose tips are at 3.5.
+  const auto left = [](const Vec3& x) { return x[0] < 3.2; };
+  EXPECT_EQ(shared_nodes(mesh, coarsen_once(mesh, {}, stiffness_where(mesh, 100, left)), 3.6), 0);
+  EXPECT_GT(shared_nodes(mesh, coarsen_once(mesh, {}, stiffness_where(mesh, 5, left)), 3.6), 0);
+}
+
+TEST(Coarsen, DoesNotJoinTwoInclusionsAcrossASoftLayer) {
+  const TetMesh mesh = make_box({7, 2, 2}, 1.0);
+  // Soft between x = 3 and 4 only: soft elements join the stiff nodes of either side.
+  const auto ends = [](const Vec3& x) { return x[0] < 3 || x[0] > 4; };
+  EXPECT_EQ(shared_nodes(mesh, coarsen_once(mesh, {}, stiffness_where(mesh, 1000, ends)), 3.5), 0);
 }
 
 TEST(LatticeHierarchy, RowsOfAColorShareNoBlockAndColorsAscendFromTheDiagonal) {
@@ -123,9 +141,15 @@ TEST(LatticeHierarchy, ShrinksAtLeastByThreeToTheBottom) {
   const TetMesh mesh = make_box({20, 10, 10}, 0.1);
   const LatticeHierarchy hierarchy = build_lattice_hierarchy(mesh, {}, pattern_of(mesh), {});
   ASSERT_GE(hierarchy.levels.size(), 3u);
-  EXPECT_LE(hierarchy.levels.back().pattern.rows(), 150);
+  EXPECT_LE(20 * hierarchy.levels.back().pattern.rows(), hierarchy.levels.front().pattern.rows());
   for (std::size_t h = 0; h + 1 < hierarchy.levels.size(); ++h)
     EXPECT_GE(hierarchy.levels[h].pattern.rows(), 3 * hierarchy.levels[h + 1].pattern.rows());
+}
+
+TEST(LatticeHierarchy, StopsEarlyWhereTheFactorsAreCheap) {
+  const TetMesh rod = make_box({200, 1, 1}, 0.1), block = make_box({14, 14, 14}, 0.1);
+  EXPECT_GT(build_lattice_hierarchy(rod, {}, pattern_of(rod), {}).levels.back().pattern.rows(), 150);
+  EXPECT_LE(build_lattice_hierarchy(block, {}, pattern_of(block), {}).levels.back().pattern.rows(), 300);
 }
 
 TEST(LatticeHierarchy, NumbersEveryMeshNodeAndBlockOnce) {

@@ -110,6 +110,23 @@ TEST(Multigrid, CopesWithAStiffnessContrastOfAMillion) {
   EXPECT_LE(solution.report.iterations, 2 * homogeneous);
 }
 
+TEST(Multigrid, CopesWithHardInclusionsThatNearlyTouch) {
+  // Rows of hard cubes with one soft cube between: soft elements join hard nodes of different inclusions.
+  const TetMesh mesh = make_box({12, 6, 6}, 0.1);
+  std::vector<double> factor, stiffness;
+  for (const Tet& tet : mesh.tets) {
+    Vec3 center = Vec3::Zero();
+    for (const Index node : tet) center += 2.5 * mesh.nodes[static_cast<std::size_t>(node)];
+    const auto inside = [](double x) { return std::fmod(x, 4.0) < 3.0; };
+    factor.push_back(inside(center[0]) && inside(center[1]) && inside(center[2]) ? 1e4 : 1);
+    stiffness.push_back(1e6 * factor.back());
+  }
+  const ElasticSystem system = assemble(mesh, {}, at_left_end, factor);
+  const int copied = solve(mesh, system, 1e-6, {}, stiffness).report.iterations;
+  EXPECT_LE(copied, 30);
+  EXPECT_LT(copied, solve(mesh, system, 1e-6).report.iterations);
+}
+
 TEST(Multigrid, SolvesTwoLegsThatPassTheSameCoarseNodes) {
   // Two legs one cube apart, joined at the top, standing on the ground.
   const TetMesh mesh = make_box({5, 4, 16}, 0.05, [](Index x, Index, Index z) { return x != 2 || z > 12; });
