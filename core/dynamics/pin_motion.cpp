@@ -3,24 +3,17 @@
 #include "core/elasticity/element_rotation.h"
 
 namespace softreel {
-namespace {
 
-/// p -> to + rotation (p - from).
-struct RigidMotion {
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-  Quaternion rotation = Quaternion::Identity();
-  Index points = 0;
-};
-
-/// The best motion of each piece; points = 0 where it holds none.
-std::vector<RigidMotion> fit_motions(const Pieces& pieces, std::span<const std::uint8_t> held,
-                                     std::span<const Vec3> targets, std::span<const Vec3> positions) {
-  std::vector<RigidMotion> motions(static_cast<std::size_t>(pieces.count));
+std::vector<RigidMotion> fit_rigid_motions(const Pieces& groups, std::span<const std::uint8_t> held,
+                                           std::span<const Vec3> positions, std::span<const Vec3> targets) {
+  std::vector<RigidMotion> motions(static_cast<std::size_t>(groups.count));
   std::vector<Mat3> moments(motions.size(), Mat3::Zero());
-  const auto piece = [&](std::size_t i) { return static_cast<std::size_t>(pieces.of_node[i]); };
+  const auto motion_of = [&](std::size_t i) -> RigidMotion& {
+    return motions[static_cast<std::size_t>(groups.of_node[i])];
+  };
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (held[i] == 0) continue;
-    RigidMotion& motion = motions[piece(i)];
+    RigidMotion& motion = motion_of(i);
     motion.from += positions[i];
     motion.to += targets[i];
     ++motion.points;
@@ -32,28 +25,48 @@ std::vector<RigidMotion> fit_motions(const Pieces& pieces, std::span<const std::
   }
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (held[i] == 0) continue;
-    const RigidMotion& motion = motions[piece(i)];
-    moments[piece(i)] += (targets[i] - motion.to) * (positions[i] - motion.from).transpose();
+    const RigidMotion& motion = motion_of(i);
+    moments[static_cast<std::size_t>(groups.of_node[i])] +=
+        (targets[i] - motion.to) * (positions[i] - motion.from).transpose();
   }
-  for (std::size_t p = 0; p < motions.size(); ++p)
-    motions[p].rotation = find_rotation(moments[p], Quaternion::Identity());
+  for (std::size_t k = 0; k < motions.size(); ++k)
+    motions[k].rotation = find_rotation(moments[k], Quaternion::Identity());
   return motions;
 }
 
-}  // namespace
-
 void follow_rigidly(const Pieces& pieces, std::span<const std::uint8_t> held, std::span<const Vec3> targets,
-                    std::span<Vec3> positions, std::span<Quaternion> rotations, const std::vector<Tet>& tets) {
-  const std::vector<RigidMotion> motions = fit_motions(pieces, held, targets, positions);
-  const auto piece = [&](Index node) {
-    return static_cast<std::size_t>(pieces.of_node[static_cast<std::size_t>(node)]);
+                    const std::vector<Tet>& tets, std::span<Vec3> positions, std::span<Quaternion> rotations) {
+  const std::vector<RigidMotion> motions = fit_rigid_motions(pieces, held, positions, targets);
+  const auto motion_of = [&](std::size_t node) -> const RigidMotion& {
+    return motions[static_cast<std::size_t>(pieces.of_node[node])];
   };
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const RigidMotion& motion = motions[piece(static_cast<Index>(i))];
+    const RigidMotion& motion = motion_of(i);
     if (motion.points > 0) positions[i] = motion.to + motion.rotation * (positions[i] - motion.from);
   }
   for (std::size_t e = 0; e < tets.size(); ++e)
-    rotations[e] = (motions[piece(tets[e][0])].rotation * rotations[e]).normalized();
+    rotations[e] = (motion_of(static_cast<std::size_t>(tets[e][0])).rotation * rotations[e]).normalized();
+}
+
+HeldMotion::HeldMotion(const std::vector<Tet>& tets, std::span<const std::uint8_t> held,
+                       std::span<const Vec3> positions, std::span<const Vec3> targets)
+    : clusters_(find_pieces(tets, positions.size(), held)),
+      motions_(fit_rigid_motions(clusters_, held, positions, targets)),
+      start_(positions.begin(), positions.end()),
+      targets_(targets.begin(), targets.end()) {}
+
+std::vector<Vec3> HeldMotion::at(double share) const {
+  std::vector<Vec3> places(start_.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (clusters_.of_node[i] < 0) continue;
+    const RigidMotion& motion = motions_[static_cast<std::size_t>(clusters_.of_node[i])];
+    const Vec3 arm = start_[i] - motion.from;
+    const Vec3 rest = motion.rotation.conjugate() * (targets_[i] - motion.to) - arm;
+    const Quaternion turned = Quaternion::Identity().slerp(share, motion.rotation);
+    places[i] = share == 1 ? targets_[i]
+                           : Vec3(motion.from + share * (motion.to - motion.from) + turned * (arm + share * rest));
+  }
+  return places;
 }
 
 }  // namespace softreel

@@ -1,5 +1,7 @@
 #include "core/dynamics/rigid_modes.h"
 
+#include <vector>
+
 #include <Eigen/Cholesky>
 
 namespace softreel {

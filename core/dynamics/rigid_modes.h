@@ -3,10 +3,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "core/base/types.h"
-#include "core/dynamics/simulator_parts.h"
+#include "core/dynamics/pieces.h"
 
 namespace softreel {
 

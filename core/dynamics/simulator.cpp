@@ -1,7 +1,6 @@
 #include "core/dynamics/simulator.h"
 
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -38,30 +37,6 @@ BodyModel checked(BodyModel model) {
 
 }  // namespace
 
-Pieces find_pieces(const TetMesh& mesh) {
-  std::vector<Index> parent(mesh.nodes.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](Index i) {
-    while (parent[static_cast<std::size_t>(i)] != i) {
-      Index& up = parent[static_cast<std::size_t>(i)];
-      up = parent[static_cast<std::size_t>(up)];
-      i = up;
-    }
-    return i;
-  };
-  for (const Tet& tet : mesh.tets)
-    for (const Index node : tet) {
-      const Index a = root(tet[0]), b = root(node);
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  Pieces pieces{0, std::vector<Index>(mesh.nodes.size())};
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    const Index r = root(static_cast<Index>(i));
-    pieces.of_node[i] = static_cast<std::size_t>(r) == i ? pieces.count++ : pieces.of_node[static_cast<std::size_t>(r)];
-  }
-  return pieces;
-}
-
 Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads,
                         const Log& its_log, StageTimes& its_times)
     : model(checked(std::move(body_model))),
@@ -72,7 +47,7 @@ Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params,
       body(make_elastic_body(model.mesh, model.materials, params.dilatation)),
       masses(lump_masses(model.mesh, model.materials)),
       pins(model.pins, model.embedding, model.mesh),
-      pieces(find_pieces(model.mesh)),
+      pieces(find_pieces(model.mesh.tets, model.mesh.nodes.size())),
       matrix{stiffness_pattern(model.mesh.tets, static_cast<Index>(model.mesh.nodes.size())), {}},
       assembler(model.mesh.tets, matrix.pattern),
       multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern, params.multigrid, threads),
@@ -87,9 +62,8 @@ std::vector<ActivePull> Simulator::Parts::pulls_at(double frame) const {
   return active_pulls(model.pulls, model.surface_points, model.embedding, model.mesh, frame);
 }
 
-void Simulator::Parts::find_forces(std::span<const Vec3> positions, std::span<const Quaternion> rotations,
-                                   const std::vector<ActivePull>& pulls, std::span<Vec3> forces) {
-  find_stresses(body, positions, rotations, stresses, threads);
+void Simulator::Parts::gather_all_forces(std::span<const Vec3> positions, const std::vector<ActivePull>& pulls,
+                                         std::span<Vec3> forces) const {
   gather_forces(body, stresses, forces, threads);
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += masses.mass[i] * model.gravity;
   for (const ActivePull& pull : pulls) add_pull_forces(pull, positions, forces);

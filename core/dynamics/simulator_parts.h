@@ -6,23 +6,13 @@
 
 #include "core/constraints/pins.h"
 #include "core/constraints/pulls.h"
+#include "core/dynamics/pieces.h"
 #include "core/dynamics/simulator.h"
 #include "core/elasticity/assembly.h"
 #include "core/elasticity/elastic_body.h"
 #include "core/elasticity/mass.h"
 
 namespace softreel {
-
-/// Nodes and elements per chunk of loops over a body.
-inline constexpr std::int64_t kDynamicsGrain = 1024;
-
-/// Pieces of a mesh that share no node: each moves on its own.
-struct Pieces {
-  Index count = 0;
-  std::vector<Index> of_node;  ///< per node
-};
-
-Pieces find_pieces(const TetMesh& mesh);
 
 struct Simulator::Parts {
   Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads, const Log& its_log,
@@ -50,9 +40,9 @@ struct Simulator::Parts {
   std::size_t nodes() const { return model.mesh.nodes.size(); }
 
   std::vector<ActivePull> pulls_at(double frame) const;
-  /// Gravity, elasticity and pulls on the nodes, N.
-  void find_forces(std::span<const Vec3> positions, std::span<const Quaternion> rotations,
-                   const std::vector<ActivePull>& pulls, std::span<Vec3> forces);
+  /// Gravity, elasticity (of `stresses`) and pulls on the nodes, N.
+  void gather_all_forces(std::span<const Vec3> positions, const std::vector<ActivePull>& pulls,
+                         std::span<Vec3> forces) const;
   /// 1 per piece that a pin or pull holds.
   std::vector<std::uint8_t> held_pieces(const PinnedNodes& pinned, const std::vector<ActivePull>& pulls) const;
   /// Names the first element whose shape or force is not a number, or else the node with the greatest entry of `blame`.

@@ -70,7 +70,8 @@ void StaticSolver::evaluate(StaticState& state) {
   }
   const ScopedStage stage(parts_.times, "simulate/assemble");
   state.forces.resize(state.positions.size());
-  parts_.find_forces(state.positions, state.rotations, pulls_, state.forces);
+  find_stresses(parts_.body, state.positions, state.rotations, parts_.stresses, parts_.threads);
+  parts_.gather_all_forces(state.positions, pulls_, state.forces);
   const double elastic = elastic_energy(parts_.body, state.positions, state.rotations, parts_.threads);
   double weight = 0, terms = std::abs(elastic);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
@@ -118,7 +119,8 @@ void StaticSolver::measure_scales(StaticState& state) const {
 void StaticSolver::assemble(const StaticState& state, Curvature curvature) {
   const ScopedStage stage(parts_.times, "simulate/assemble");
   if (parts_.params.rotation == RotationMethod::None) curvature = Curvature::None;
-  find_stiffness_terms(parts_.body, state.positions, state.rotations, shares_, curvature, parts_.terms, parts_.threads);
+  find_stiffness_terms(parts_.body, state.positions, state.rotations, shares_, curvature, parts_.terms, {},
+                       parts_.threads);
   parts_.assembler.assemble(parts_.terms, node_terms_, parts_.matrix, parts_.threads);
   for (const ActivePull& pull : pulls_) add_pull_stiffness(pull, state.positions, 1.0, parts_.matrix);
 }

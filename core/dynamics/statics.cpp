@@ -13,6 +13,14 @@ namespace {
 constexpr int kStepIterations = 30;
 constexpr double kStepTolerance = 1e-3;
 constexpr double kSmallestLoadStep = 1.0 / 256;
+constexpr double kStepGrowth = 1.5;
+
+/// Iterations add up; status and residual are those of the last part.
+void report_step(SolveReport& total, const SolveReport& step) {
+  const int iterations = total.iterations + step.iterations;
+  total = step;
+  total.iterations = iterations;
+}
 
 /// A piece that nothing holds has no equilibrium under gravity.
 void check_held(const Simulator::Parts& parts, const std::vector<std::uint8_t>& held, double frame) {
@@ -32,38 +40,32 @@ void check_held(const Simulator::Parts& parts, const std::vector<std::uint8_t>& 
       at.y(), at.z()));
 }
 
-/// Equilibrium at `targets`, in smaller moves of the held nodes where one is too much.
+/// Equilibrium with the held nodes at the end of their motion, in smaller moves where one is too much.
 SolveReport solve_in_steps(const Simulator::Parts& parts, StaticSolver& solver, StaticState& state,
-                           std::span<const std::uint8_t> held, std::span<const Vec3> targets) {
-  const std::vector<Vec3> start = state.positions;
-  std::vector<Vec3> partial(targets.begin(), targets.end());
+                           const HeldMotion& motion) {
   double done = 0, step = 1;
   SolveReport total;
   while (true) {
-    const bool last = done + step >= 1;
-    const double reached = last ? 1.0 : done + step;
-    for (std::size_t i = 0; i < partial.size(); ++i)
-      if (held[i] != 0) partial[i] = last ? targets[i] : Vec3(start[i] + reached * (targets[i] - start[i]));
+    const double reached = std::min(1.0, done + step);
+    const bool last = reached == 1;
     StaticState next{state.positions, state.rotations, {}};
-    const int allowed = last && done > 0 ? parts.params.max_newton_iterations
-                                         : std::min(kStepIterations, parts.params.max_newton_iterations);
     const int left = parts.params.max_newton_iterations - solver.iterations();
-    const SolveReport report = solver.solve(next, partial, last ? parts.params.force_tolerance : kStepTolerance,
-                                            std::max(0, std::min(allowed, left)));
-    total.iterations += report.iterations;
-    total.status = report.status;
-    total.residual = report.residual;
+    // A first, full move shows by kStepIterations whether it works; what remains of the limit is for smaller ones.
+    const int allowed = std::max(0, last && done > 0 ? left : std::min(left, kStepIterations));
+    const SolveReport report =
+        solver.solve(next, motion.at(reached), last ? parts.params.force_tolerance : kStepTolerance, allowed);
+    report_step(total, report);
     if (report.ok()) {
       state = std::move(next);
       if (last) return total;
       done = reached;
-      step *= 1.5;
-    } else {
-      step *= 0.5;
-      if (step < kSmallestLoadStep || left <= 0) {
-        state.forces = std::move(next.forces);
-        return total;
-      }
+      step *= kStepGrowth;
+      continue;
+    }
+    step *= 0.5;
+    if (step < kSmallestLoadStep || left <= 0) {
+      state = std::move(next);
+      return total;
     }
   }
 }
@@ -82,9 +84,10 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
   const std::vector<std::uint8_t> held = held_pieces(pinned, pulls);
   check_held(*this, held, frame);
   StaticState next{state.positions, state.rotations, {}};
-  follow_rigidly(pieces, pinned.held, pinned.targets, next.positions, next.rotations, body.tets);
+  follow_rigidly(pieces, pinned.held, pinned.targets, body.tets, next.positions, next.rotations);
+  const HeldMotion motion(body.tets, pinned.held, next.positions, pinned.targets);
   StaticSolver solver(*this, pinned.held, held, pulls);
-  report.solve = solve_in_steps(*this, solver, next, pinned.held, pinned.targets);
+  report.solve = solve_in_steps(*this, solver, next, motion);
   report.nonlinear_iterations = solver.iterations();
   if (!report.ok()) {
     report.culprit = find_culprit(next.positions, next.forces);

@@ -31,13 +31,13 @@ struct StepWork {
   std::vector<double> node_terms;  ///< mass part of S
 };
 
-/// S, from elements, masses and pulls.
+/// S, from elements, masses and pulls; on the way the stresses.
 void assemble_step(Simulator::Parts& parts, StepWork& work) {
   const double h = work.h;
   std::vector<double> shares(parts.body.tets.size());
   for (std::size_t e = 0; e < shares.size(); ++e) shares[e] = h * h + h * parts.model.materials[e].damping_stiffness;
   find_stiffness_terms(parts.body, parts.state.positions, work.rotations, shares, Curvature::None, parts.terms,
-                       parts.threads);
+                       parts.stresses, parts.threads);
   work.node_terms.resize(parts.nodes());
   for (std::size_t i = 0; i < parts.nodes(); ++i)
     work.node_terms[i] = parts.masses.mass[i] + h * parts.masses.damping[i];
@@ -50,7 +50,7 @@ void find_right_side(Simulator::Parts& parts, StepWork& work) {
   const SimulationState& state = parts.state;
   const std::size_t n = parts.nodes();
   work.right_side.resize(n);
-  parts.find_forces(state.positions, work.rotations, work.pulls, work.right_side);
+  parts.gather_all_forces(state.positions, work.pulls, work.right_side);
   std::vector<Vec3> velocities = state.velocities, product(n);
   for (std::size_t i = 0; i < n; ++i)
     if (work.pinned.held[i] != 0) velocities[i] = (work.pinned.targets[i] - state.positions[i]) / work.h;

@@ -1,5 +1,6 @@
 #include "core/elasticity/assembly.h"
 
+#include <array>
 #include <cmath>
 
 #include "core/base/check.h"
@@ -16,41 +17,75 @@ Mat3 cross_matrix(const Vec3& v) {
   return m;
 }
 
-/// Terms of element e; returns its ratio.
-double find_element_terms(const ElasticBody& body, std::size_t e, std::span<const Vec3> positions, const Mat3& rotation,
-                          double share, Curvature curvature, StiffnessTerms& terms) {
-  const ElementShape& shape = body.shapes[e];
-  const ElasticLaw& law = body.laws[e];
-  const Mat3 F = deformation_gradient(shape.gradients, nodes_of(body.tets[e], positions));
-  const double trace = rotation.cwiseProduct(F).sum() - 3;
-  terms.gradients[e] = (std::sqrt(share * shape.volume * law.mu) * rotation) * shape.gradients;
-  terms.ratios[e] = law.pressure_slope(trace) / law.mu;
-  if (curvature != Curvature::None)
-    terms.curvatures[e] = rotation_curvature(law, rotation, F, curvature == Curvature::PositivePart) / law.mu;
-  return terms.ratios[e];
+/// A row of a block, or a gradient, in vector lanes; the fourth is 0.
+using Row = Eigen::Array4d;
+using RowMap = Eigen::Map<const Row, Eigen::Aligned32>;
+
+/// One element on its way into the matrix.
+struct ElementSource {
+  const ElementShape& shape;
+  const ElasticLaw& law;
+  Mat3 rotation, F, strain;
+};
+
+ElementSource find_source(const ElasticBody& body, std::size_t e, std::span<const Vec3> positions,
+                          const Quaternion& rotation) {
+  ElementSource source{body.shapes[e], body.laws[e], rotation.toRotationMatrix(), {}, {}};
+  source.F = deformation_gradient(source.shape.gradients, nodes_of(body.tets[e], positions));
+  source.strain = corotated_strain(source.rotation, source.F);
+  return source;
+}
+
+void store_gradients(const ElementSource& source, double share, double* gradients) {
+  const Mat3 scaled = std::sqrt(share * source.shape.volume * source.law.mu) * source.rotation;
+  for (int k = 0; k < 4; ++k) {
+    const Vec3 g = scaled * source.shape.gradients.col(k);
+    Eigen::Map<Row, Eigen::Aligned32>(gradients + 4 * k) = Row(g.x(), g.y(), g.z(), 0);
+  }
+}
+
+Mat3 weighted_stress(const ElementSource& source) {
+  const Mat3 stress = 2 * source.law.mu * source.strain + source.law.pressure(source.strain.trace()) * Mat3::Identity();
+  return source.rotation * (source.shape.volume * stress);
+}
+
+void store_block(const Mat3& value, double* block) {
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> destination(block);
+  destination = value;
+}
+
+Mat3 matrix_of(const std::array<Row, 3>& rows) {
+  Mat3 m;
+  for (int r = 0; r < 3; ++r) m.row(r) = rows[static_cast<std::size_t>(r)].head<3>().matrix().transpose();
+  return m;
 }
 
 }  // namespace
 
 void find_stiffness_terms(const ElasticBody& body, std::span<const Vec3> positions,
                           std::span<const Quaternion> rotations, std::span<const double> shares, Curvature curvature,
-                          StiffnessTerms& terms, const Threads& threads) {
+                          StiffnessTerms& terms, std::span<Mat3> stresses, const Threads& threads) {
   const std::size_t elements = body.tets.size();
-  terms.gradients.resize(elements);
+  const double expected_ratio = elements > 0 ? body.laws[0].lambda / body.laws[0].mu : 0.0;
+  terms.gradients.resize(16 * elements);
   terms.ratios.resize(elements);
   terms.curvatures.resize(curvature == Curvature::None ? 0 : elements);
-  const double differences =
-      threads.sum_chunks(static_cast<std::int64_t>(elements), kElementGrain, [&](std::int64_t begin, std::int64_t end) {
-        const double expected = body.laws[0].lambda / body.laws[0].mu;
-        double different = 0;
-        for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e)
-          different += find_element_terms(body, e, positions, rotations[e].toRotationMatrix(), shares[e], curvature,
-                                          terms) == expected
-                           ? 0
-                           : 1;
-        return different;
-      });
-  terms.uniform_ratio = differences == 0;
+  const auto chunk = [&](std::int64_t begin, std::int64_t end) {
+    double different = 0;
+    for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
+      const ElementSource source = find_source(body, e, positions, rotations[e]);
+      store_gradients(source, shares[e], &terms.gradients[16 * e]);
+      if (!stresses.empty()) stresses[e] = weighted_stress(source);
+      terms.ratios[e] = source.law.pressure_slope(source.strain.trace()) / source.law.mu;
+      if (terms.ratios[e] != expected_ratio) ++different;
+      if (curvature != Curvature::None)
+        terms.curvatures[e] =
+            rotation_curvature(source.law, source.rotation, source.F, curvature == Curvature::PositivePart) /
+            source.law.mu;
+    }
+    return different;
+  };
+  terms.uniform_ratio = threads.sum_chunks(static_cast<std::int64_t>(elements), kElementGrain, chunk) == 0;
 }
 
 StiffnessAssembler::StiffnessAssembler(const std::vector<Tet>& tets, const BlockPattern& pattern) {
@@ -83,34 +118,45 @@ StiffnessAssembler::StiffnessAssembler(const std::vector<Tet>& tets, const Block
 }
 
 template <bool kUniform, bool kCurved>
+Mat3 StiffnessAssembler::gather_block(const StiffnessTerms& terms, const UpperBlock& block, double node_term) const {
+  std::array<Row, 3> product{Row::Zero(), Row::Zero(), Row::Zero()}, weighted = product;
+  Mat3 curved = Mat3::Zero();
+  for (std::int64_t r = block.first; r < block.last; ++r) {
+    const std::uint32_t reference = references_[static_cast<std::size_t>(r)];
+    const std::size_t e = reference >> 4;
+    const double* const gi = &terms.gradients[4 * (reference >> 2)];
+    const double* const gj = &terms.gradients[16 * e + 4 * (reference & 3)];
+    const RowMap row(gj);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Row outer = gi[k] * row;
+      product[k] += outer;
+      if constexpr (!kUniform) weighted[k] += terms.ratios[e] * outer;
+    }
+    if constexpr (kCurved)
+      curved -= cross_matrix({gi[0], gi[1], gi[2]}) * terms.curvatures[e] * cross_matrix({gj[0], gj[1], gj[2]});
+  }
+  const Mat3 P = matrix_of(product);
+  const Mat3 L = kUniform ? Mat3((terms.ratios.empty() ? 0.0 : terms.ratios[0]) * P) : matrix_of(weighted);
+  Mat3 value = L + P.transpose() + curved;
+  value.diagonal().array() += P.trace() + node_term;
+  return value;
+}
+
+template <bool kUniform, bool kCurved>
 void StiffnessAssembler::gather_rows(const StiffnessTerms& terms, std::span<const double> node_terms,
-                                     BlockMatrixd& matrix, Index begin, Index end) const {
-  const double common_ratio = kUniform && !terms.ratios.empty() ? terms.ratios[0] : 0.0;
+                                     BlockMatrixd& matrix, std::int64_t begin, std::int64_t end) const {
   for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row)
     for (std::int64_t k = row_starts_[row]; k < row_starts_[row + 1]; ++k) {
       const UpperBlock& block = blocks_[static_cast<std::size_t>(k)];
-      Mat3 product = Mat3::Zero(), weighted = Mat3::Zero(), curved = Mat3::Zero();
-      for (std::int64_t r = block.first; r < block.last; ++r) {
-        const std::uint32_t reference = references_[static_cast<std::size_t>(r)];
-        const std::size_t e = reference >> 4;
-        const Gradients& g = terms.gradients[e];
-        const Vec3 gi = g.col((reference >> 2) & 3), gj = g.col(reference & 3);
-        const Mat3 outer = gi * gj.transpose();
-        product += outer;
-        if constexpr (!kUniform) weighted += terms.ratios[e] * outer;
-        if constexpr (kCurved) curved -= cross_matrix(gi) * terms.curvatures[e] * cross_matrix(gj);
+      if (block.position == block.mirror) {
+        const Mat3 value = gather_block<kUniform, kCurved>(terms, block, node_terms[row]);
+        // Symmetric to the last bit, whatever the order of the sums.
+        store_block(0.5 * (value + value.transpose()), matrix.block(block.position));
+      } else {
+        const Mat3 value = gather_block<kUniform, kCurved>(terms, block, 0.0);
+        store_block(value, matrix.block(block.position));
+        store_block(value.transpose(), matrix.block(block.mirror));
       }
-      if constexpr (kUniform) weighted = common_ratio * product;
-      double diagonal = product.trace();
-      const bool on_diagonal = block.position == block.mirror;
-      if (on_diagonal) diagonal += node_terms[row];
-      Mat3 value = weighted + product.transpose() + diagonal * Mat3::Identity();
-      if constexpr (kCurved) value += curved;
-      // Symmetric diagonal blocks to the last bit, whatever the order of the sums above.
-      if (on_diagonal) value = (0.5 * (value + value.transpose())).eval();
-      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.block(block.position)) = value;
-      if (!on_diagonal)
-        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.block(block.mirror)) = value.transpose();
     }
 }
 
@@ -118,12 +164,12 @@ void StiffnessAssembler::assemble(const StiffnessTerms& terms, std::span<const d
                                   const Threads& threads) const {
   matrix.values.resize(9 * static_cast<std::size_t>(matrix.pattern.blocks()));
   const bool curved = !terms.curvatures.empty();
+  const bool uniform = terms.uniform_ratio;
   threads.for_chunks(matrix.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
-    const auto first = static_cast<Index>(begin), last = static_cast<Index>(end);
-    if (curved && terms.uniform_ratio) gather_rows<true, true>(terms, node_terms, matrix, first, last);
-    if (curved && !terms.uniform_ratio) gather_rows<false, true>(terms, node_terms, matrix, first, last);
-    if (!curved && terms.uniform_ratio) gather_rows<true, false>(terms, node_terms, matrix, first, last);
-    if (!curved && !terms.uniform_ratio) gather_rows<false, false>(terms, node_terms, matrix, first, last);
+    if (curved && uniform) gather_rows<true, true>(terms, node_terms, matrix, begin, end);
+    if (curved && !uniform) gather_rows<false, true>(terms, node_terms, matrix, begin, end);
+    if (!curved && uniform) gather_rows<true, false>(terms, node_terms, matrix, begin, end);
+    if (!curved && !uniform) gather_rows<false, false>(terms, node_terms, matrix, begin, end);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/aligned.h"
 #include "core/base/parallel.h"
 #include "core/base/types.h"
 #include "core/elasticity/elastic_body.h"
@@ -17,9 +18,9 @@ namespace softreel {
 /// the matrix (h^2 + h damping_stiffness in a time step, 1 in statics):
 /// block(i, j) = ratio g_i g_j^T + g_j g_i^T + (g_i . g_j) I + [g_i]x curvature [g_j]x^T.
 struct StiffnessTerms {
-  std::vector<Gradients> gradients;  ///< g_i
-  std::vector<double> ratios;        ///< slope of the dilatation stress over mu
-  std::vector<Mat3> curvatures;      ///< rotation_curvature over mu; empty: left out
+  AlignedVector<double> gradients;  ///< g_i as x y z 0, so that a row of a block is one vector: elements x 4 x 4
+  std::vector<double> ratios;       ///< slope of the dilatation stress over mu
+  std::vector<Mat3> curvatures;     ///< rotation_curvature over mu; empty: left out
   /// True if all ratios are equal; then one gather makes both products.
   bool uniform_ratio = false;
 };
@@ -27,10 +28,11 @@ struct StiffnessTerms {
 /// Whether the rotation's own curvature enters the matrix (statics), and with which sign (design 4.4).
 enum class Curvature { None, Signed, PositivePart };
 
-/// Terms of all elements at a state. shares: s per element.
+/// Terms of all elements at a state, and on the way their weighted stresses V Q sigma (as find_stresses; empty: left
+/// out), which need the same deformation gradients. shares: s per element.
 void find_stiffness_terms(const ElasticBody& body, std::span<const Vec3> positions,
                           std::span<const Quaternion> rotations, std::span<const double> shares, Curvature curvature,
-                          StiffnessTerms& terms, const Threads& threads);
+                          StiffnessTerms& terms, std::span<Mat3> stresses, const Threads& threads);
 
 /// The references of one mesh: made once, used for every matrix on its pattern.
 class StiffnessAssembler {
@@ -49,9 +51,12 @@ class StiffnessAssembler {
     std::int64_t first, last;       ///< range of references_
   };
 
+  /// uniform: the ratios are; curved: there are curvatures.
   template <bool kUniform, bool kCurved>
-  void gather_rows(const StiffnessTerms& terms, std::span<const double> node_terms, BlockMatrixd& matrix, Index begin,
-                   Index end) const;
+  Mat3 gather_block(const StiffnessTerms& terms, const UpperBlock& block, double node_term) const;
+  template <bool kUniform, bool kCurved>
+  void gather_rows(const StiffnessTerms& terms, std::span<const double> node_terms, BlockMatrixd& matrix,
+                   std::int64_t begin, std::int64_t end) const;
 
   std::vector<std::int64_t> row_starts_;   ///< upper blocks of row i: [row_starts_[i], row_starts_[i + 1])
   std::vector<UpperBlock> blocks_;         ///< by rows, the diagonal first

@@ -33,16 +33,17 @@ Quaternion find_element_rotation(const TetNodes& rest, const TetNodes& deformed,
 /// A = sum (x_i - c)(X_i - c0)^T of eq. (3), m^2.
 Mat3 element_moment(const TetNodes& rest, const TetNodes& deformed);
 
-/// Elements that the batched kernel works on at once, whatever the width of the machine's registers.
-inline constexpr int kRotationLanes = 8;
+/// Elements that the batched kernel works on at once, whatever the width of the machine's registers: enough to keep
+/// four of AVX2 in flight through the chain of Newton steps.
+inline constexpr int kRotationLanes = 16;
 
 /// A of one batch: entry (r, c) of lane l is entries[3 r + c][l].
-struct alignas(64) MatrixLanes {
+struct alignas(128) MatrixLanes {
   double entries[9][kRotationLanes];
 };
 
 /// Rotations of one batch as (w, x, y, z)[lane].
-struct alignas(64) QuaternionLanes {
+struct alignas(128) QuaternionLanes {
   double entries[4][kRotationLanes];
 };
 

@@ -1,4 +1,4 @@
-/// The batched twin of find_rotation: the quartic's root, the adjugate and its certificate on lanes of 8 doubles.
+/// The batched twin of find_rotation: the quartic's root, the adjugate and its certificate on lanes of doubles.
 ///
 /// In lanes the quartic comes first, not the warm start: its Newton needs one division a step and no branch, and with
 /// the root known one adjugate times the guess gives the eigenvector, where Rayleigh quotients take three.
@@ -33,14 +33,29 @@ Lanes greatest_entry(const detail::Matrix9<Lanes>& A) {
   return greatest;
 }
 
-Lanes greatest_root(const detail::Matrix9<Lanes>& A) {
+/// An upper bound of the greatest root: sqrt(3) |A|, or closer, one Newton step from the guess's Rayleigh quotient.
+///
+/// Such a step ends above the root if it starts right of the greatest critical point, where the quartic is convex; that
+/// is so where the point is positive with positive first and second derivative.
+Lanes upper_bound(const detail::Quartic<Lanes>& quartic, const Lanes& rayleigh) {
+  const Lanes bound = stdx::sqrt(Lanes(-1.5) * quartic.c2), square = rayleigh * rayleigh;
+  const Lanes slope = (Lanes(4) * square + Lanes(2) * quartic.c2) * rayleigh + quartic.c1;
+  const Mask convex =
+      rayleigh > Lanes(0) && Lanes(6) * square + quartic.c2 > Lanes(0) && slope > Lanes(1e-3) * square * rayleigh;
+  Lanes start = bound;
+  where(convex, start) = stdx::min(bound, rayleigh - newton_step(quartic, rayleigh));
+  return start;
+}
+
+Lanes greatest_root(const detail::Matrix9<Lanes>& A, const Lanes& rayleigh) {
   const detail::Quartic<Lanes> quartic = detail::davenport_quartic(A);
-  Lanes root = stdx::sqrt(Lanes(-1.5) * quartic.c2);
+  Lanes root = upper_bound(quartic, rayleigh);
   for (int step = 0; step < kNewtonSteps; ++step) {
     const Lanes change = newton_step(quartic, root);
     const Mask moves = change > Lanes(1e-16) * root;
-    if (stdx::none_of(moves)) break;
     where(moves, root) = root - change;
+    // A step below 1e-9 leaves the next one, quadratically smaller, below round-off.
+    if (stdx::none_of(change > Lanes(1e-9) * root)) break;
   }
   return root;
 }
@@ -91,7 +106,7 @@ void find_rotations(const MatrixLanes& matrices, QuaternionLanes& rotations) noe
 
   const detail::Symmetric4<Lanes> N = detail::davenport_matrix(A);
   Mask good(true);
-  detail::Quad<Lanes> q = eigenvector(N, greatest_root(A), guess, good);
+  detail::Quad<Lanes> q = eigenvector(N, greatest_root(A, dot(guess, multiply(N, guess))), guess, good);
   good = good && certified(N, q);
 
   const Lanes alignment = dot(q, guess);
