@@ -1,0 +1,110 @@
+#include "core/tetmesh/winding_number.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/tetmesh/row_crossings.h"
+#include "core/tetmesh/triangle_tree.h"
+#include "tests/support/surfaces.h"
+
+namespace softreel {
+namespace {
+
+Vec3 random_point(std::mt19937& random, double half_size) {
+  std::uniform_real_distribution<double> coordinate(-half_size, half_size);
+  return {coordinate(random), coordinate(random), coordinate(random)};
+}
+
+TEST(WindingNumber, IsOneInsideAndZeroOutside) {
+  const SurfaceMesh ball = test::make_sphere(1, 16, Vec3::Zero());
+  const WindingNumber winding(ball.positions, ball.triangles);
+  std::mt19937 random(1);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p = random_point(random, 1.5);
+    if (std::abs(p.norm() - 1) < 0.02) continue;
+    EXPECT_NEAR(winding(p), p.norm() < 1 ? 1 : 0, 0.1);
+  }
+}
+
+TEST(WindingNumber, IsAHalfInTheMiddleOfAHemispheresOpening) {
+  SurfaceMesh bowl = test::make_sphere(1, 16, Vec3::Zero());
+  std::erase_if(bowl.triangles, [&](const Triangle& triangle) {
+    double top = -1;
+    for (const Index v : triangle) top = std::max(top, bowl.positions[static_cast<std::size_t>(v)][1]);
+    return top > 1e-9;
+  });
+  const WindingNumber winding(bowl.positions, bowl.triangles);
+  EXPECT_NEAR(winding(Vec3::Zero()), 0.5, 0.05);
+  EXPECT_GT(winding(Vec3(0, -0.3, 0)), 0.6);
+  EXPECT_LT(winding(Vec3(0, 0.3, 0)), 0.4);
+}
+
+TEST(RowCrossings, AgreeWithWindingNumbers) {
+  // Overlapping and nested shells, one inside out; corners and edges lie exactly on rows of the lattice.
+  SurfaceMesh surface = test::make_box(Vec3::Ones(), 2, Vec3::Zero());
+  test::append(surface, test::make_box(Vec3::Ones(), 1, Vec3(0.5, 0.5, 0.5)));
+  SurfaceMesh hole = test::make_box(Vec3::Constant(0.25), 1, Vec3::Zero());
+  test::turn_inside_out(hole);
+  test::append(surface, hole);
+  test::append(surface, test::make_torus(1.5, 0.3, 24, 12, Vec3::Zero()));
+  const LatticeFrame frame{Vec3::Zero(), 0.25};
+  const RowCrossings crossings(surface.positions, surface.triangles, frame);
+  const WindingNumber winding(surface.positions, surface.triangles);
+  const TriangleTree tree(surface.positions, surface.triangles);
+  std::size_t inside = 0;
+  for (int z = -17; z <= 17; ++z)
+    for (int y = -17; y <= 17; ++y)
+      for (int x = -17; x <= 17; ++x) {
+        if (((x ^ y) & 1) != 0 || ((x ^ z) & 1) != 0) continue;
+        const LatticeNode node{x, y, z};
+        const Vec3 p = lattice_position(frame, node);
+        if (tree.nearest(p).squared_distance < 1e-20) continue;  // on the surface: either side is right
+        EXPECT_EQ(crossings.winding(node), std::lround(winding(p))) << x << ' ' << y << ' ' << z;
+        inside += crossings.winding(node) != 0 ? 1 : 0;
+      }
+  EXPECT_GT(inside, 500U);
+}
+
+TEST(RowCrossings, VisitTheNodesWithAWindingNumber) {
+  const SurfaceMesh ring = test::make_torus(1, 0.4, 24, 12, Vec3(0.01, 0.02, 0.03));
+  const LatticeFrame frame{Vec3::Zero(), 0.2};
+  const RowCrossings crossings(ring.positions, ring.triangles, frame);
+  LatticeNodeSet visited;
+  std::size_t count = 0;
+  crossings.visit_inside([&](const LatticeNode& node) {
+    EXPECT_TRUE(visited.insert(node));
+    EXPECT_NE(crossings.winding(node), 0);
+    ++count;
+  });
+  std::size_t expected = 0;
+  for (int z = -16; z <= 16; ++z)
+    for (int y = -16; y <= 16; ++y)
+      for (int x = -16; x <= 16; ++x)
+        if (((x ^ y) & 1) == 0 && ((x ^ z) & 1) == 0 && crossings.winding({x, y, z}) != 0) ++expected;
+  EXPECT_EQ(count, expected);
+}
+
+TEST(TriangleTree, NearestEqualsBruteForce) {
+  const SurfaceMesh ring = test::make_torus(1, 0.4, 16, 8, Vec3::Zero());
+  const TriangleTree tree(ring.positions, ring.triangles);
+  std::mt19937 random(2);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p = random_point(random, 2);
+    double nearest = 1e300;
+    for (const auto& [a, b, c] : ring.triangles) {
+      const auto x = [&](Index v) { return ring.positions[static_cast<std::size_t>(v)]; };
+      nearest = std::min(nearest, (nearest_on_triangle(p, x(a), x(b), x(c)) - p).squaredNorm());
+    }
+    EXPECT_EQ(tree.nearest(p).squared_distance, nearest);
+  }
+}
+
+TEST(NearestOnTriangle, HoldsForTrianglesWithoutArea) {
+  const Vec3 a(0, 0, 0), b(1, 0, 0), c(2, 0, 0), p(1.5, 1, 0);
+  EXPECT_NEAR((nearest_on_triangle(p, a, b, c) - Vec3(1.5, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_EQ(nearest_on_triangle(p, a, a, a), a);
+}
+
+}  // namespace
+}  // namespace softreel
