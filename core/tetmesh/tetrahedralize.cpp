@@ -10,6 +10,7 @@
 #include "core/tetmesh/boundary_mending.h"
 #include "core/tetmesh/mesh_pieces.h"
 #include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/thin_parts.h"
 
 namespace softreel {
 namespace {
@@ -49,11 +50,16 @@ void require_size(const Job& job, double edge) {
 StuffedMesh fill_surface(const Job& job, double edge) {
   require_size(job, edge);
   const LatticeFrame frame{job.box.center(), edge};
-  const SurfaceDistance distance = [&] {
+  SurfaceDistance distance = [&] {
     const ScopedStage stage(job.times, "tetrahedralize/distance");
     return measure_distance(job.surface.positions, job.surface.triangles, frame, job.threads);
   }();
   const ScopedStage stage(job.times, "tetrahedralize/lattice");
+  if (const Index taken_in = bridge_thin_parts(distance, job.surface, job.parts); taken_in > 0)
+    job.log.warn(
+        fmt::format("body '{}': what is thinner than the lattice was thickened to about its edge ({:.4g} m) at {} "
+                    "nodes, so that it holds together. A smaller edge or more tets follow the surface there.",
+                    job.name, edge, taken_in));
   StuffedMesh stuffed = stuff_isosurface(distance.lattice, job.threads);
   const BoundaryMending mending = mend_boundary(stuffed);
   if (mending.copied_nodes > 0 || mending.removed_tets > 0)
