@@ -21,6 +21,9 @@ constexpr double kMaxTets = 1.5e8;
 /// Tetrahedra of a lattice: 12 per cubic cell inside, and so many per square cell of the surface.
 constexpr double kTetsPerCell = 12.0, kTetsPerSquare = 1.6;
 
+/// How far the number of elements may be from the wanted one.
+constexpr double kCountTolerance = 0.05;
+
 /// One body on its way; borrowed from the caller of tetrahedralize.
 struct Job {
   const SurfaceMesh& surface;
@@ -103,22 +106,47 @@ double edge_for_tets(double volume, double area, double tets) {
   return high;
 }
 
+/// Lines that wait until it is known whether their mesh is the one that is kept.
+struct WaitingLog {
+  std::vector<std::string> infos, warnings;
+
+  Log sink() {
+    return {[this](const std::string& line) { infos.push_back(line); },
+            [this](const std::string& line) { warnings.push_back(line); }};
+  }
+  void pass_on(const Log& log) const {
+    for (const std::string& line : infos) log.info(line);
+    for (const std::string& line : warnings) log.warn(line);
+  }
+};
+
+/// Predicts an edge, fills, and corrects it by the cube root of the count's error until that is within 5 %.
 StuffedMesh fill_with_count(const Job& job, double wanted) {
   double edge = edge_for_tets(job.parts.volume(), job.parts.area(), wanted);
   StuffedMesh best;
+  WaitingLog best_lines;
   double best_error = 1e300;
   constexpr int kSteps = 6;
   for (int step = 0; step < kSteps; ++step) {
-    StuffedMesh stuffed = fill_surface(job, edge);
+    WaitingLog lines;
+    const Log log = lines.sink();
+    StuffedMesh stuffed = fill_surface({job.surface, job.parts, job.box, job.name, job.threads, log, job.times}, edge);
     const auto count = static_cast<double>(stuffed.mesh.tets.size());
     const double error = std::abs(count / wanted - 1.0);
     if (error < best_error) {
       best_error = error;
       best = std::move(stuffed);
+      best_lines = lines;
     }
-    if (best_error <= 0.05) break;
-    edge *= std::cbrt(count / wanted);
+    if (best_error <= kCountTolerance) break;
+    edge *= std::cbrt(std::max(count, 1.0) / wanted);
   }
+  best_lines.pass_on(job.log);
+  if (best_error > kCountTolerance && !best.mesh.tets.empty())
+    job.log.warn(
+        fmt::format("body '{}': {} tetrahedra instead of tets = {}: so few follow the lattice in jumps. Set edge "
+                    "instead for a chosen size.",
+                    job.name, best.mesh.tets.size(), wanted));
   return best;
 }
 
