@@ -6,6 +6,9 @@ namespace softreel {
 
 namespace {
 
+/// Lobes of this alpha (roughness 0.32) and more are wide.
+constexpr float kWideAlpha = 0.1f;
+
 /// Mean of part(h) over the normals h visible from a cosine; part gives two numbers.
 ///
 /// GGX has heavy tails, which lie at the rim of the disk that visible normals come from: rings are spaced evenly in
@@ -229,15 +232,18 @@ Vec3f Bsdf::sample_rough_glass(const Vec3f& o, float u_side, const Vec2f& u, flo
 
 bool Bsdf::sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfSample& sample) const {
   sample.mirror = false;
+  sample.wide = alpha_ >= kWideAlpha;
   if (lambertian_) {
     sample.direction = cosine_hemisphere(u);
     sample.weight = diffuse_;
     sample.pdf = sample.direction.z() / kPi;
+    sample.wide = true;
     return sample.pdf > 0;
   }
   const Shares p = shares(ggx_albedo_.at(o.z()));
   if (lobe < p.cosine) {
     sample.direction = cosine_hemisphere(u);
+    sample.wide = true;
   } else if (lobe < p.cosine + p.reflection) {
     if (mirror_) {
       sample.direction = Vec3f(-o.x(), -o.y(), o.z());

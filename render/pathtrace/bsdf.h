@@ -48,6 +48,7 @@ struct BsdfSample {
   Vec3f direction;      ///< local
   Vec3f weight;         ///< f cos_i / pdf
   float pdf = 0;        ///< by solid angle; 0 if `mirror`
+  bool wide = false;    ///< of a lobe so wide that no details show through it
   bool mirror = false;  ///< one of finitely many directions: no light sampling can find it
 };
 

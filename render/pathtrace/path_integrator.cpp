@@ -14,9 +14,10 @@ enum Dimension : std::size_t { kLightU = 0, kLightV = 1, kBsdfU = 2, kBsdfV = 3,
 
 const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, const SurfacePoint& point) const {
   const auto mesh = static_cast<std::size_t>(hit.mesh);
+  const std::vector<Bsdf>& bsdfs = scattered_wide_ ? picture_.blurred : picture_.bsdfs;
   if (picture_.pattern && mesh + 1 == picture_.meshes.size() && picture_.pattern->alternate(point.position))
-    return picture_.bsdfs.back();
-  return picture_.bsdfs[mesh];
+    return bsdfs.back();
+  return bsdfs[mesh];
 }
 
 void PathIntegrator::add(const Vec3f& radiance) {
@@ -69,6 +70,7 @@ bool PathIntegrator::scatter(const Bsdf& bsdf, const SurfacePoint& point, const 
   ray.max_distance = std::numeric_limits<float>::infinity();
   origin_.pdf = next.pdf;
   origin_.only_way = next.mirror;
+  scattered_wide_ = scattered_wide_ || next.wide;
   origin_.from_camera = false;
   return bounces_ < kRouletteStart || survives_roulette(numbers[kRoulette]);
 }

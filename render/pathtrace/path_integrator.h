@@ -1,7 +1,8 @@
 /// The light that arrives along one camera ray: a path of scattering events with light sampling at each.
 ///
 /// Kajiya, The Rendering Equation, 1986; multiple importance sampling: Veach, Robust Monte Carlo Methods for Light
-/// Transport Simulation, 1997, chapter 9.
+/// Transport Simulation, 1997, chapter 9; caustics blurred instead of left to chance: Kaplanyan and Dachsbacher, Path
+/// Space Regularization for Holistic and Robust Light Transport, 2013.
 #pragma once
 
 #include <optional>
@@ -21,6 +22,7 @@ struct Picture {
   const RayScene* rays = nullptr;
   std::vector<const MotionMesh*> meshes;  ///< in the order of `rays`
   std::vector<Bsdf> bsdfs;                ///< per mesh; last, if there is a pattern: its second tone
+  std::vector<Bsdf> blurred;              ///< the same, as seen by way of a wide scattering
   std::optional<GroundPattern> pattern;   ///< on the last mesh
   const LightSet* lights = nullptr;
   int max_bounces = 8;
@@ -64,6 +66,7 @@ class PathIntegrator {
   Vec3f throughput_ = Vec3f::Ones();
   int bounces_ = 0;  ///< scattering events so far
   float time_ = 0;
+  bool scattered_wide_ = false;
   RayOrigin origin_;
   FirstHit first_hit_;
 };

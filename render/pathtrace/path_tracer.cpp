@@ -118,6 +118,17 @@ class Frame {
   std::uint64_t hash_;
 };
 
+/// The material twice: as it is, and as it is seen by way of a wide scattering.
+void add_bsdfs(Picture& picture, const Appearance& appearance, float least_roughness) {
+  picture.bsdfs.emplace_back(appearance);
+  Appearance blurred = appearance;
+  blurred.roughness = std::max(appearance.roughness, least_roughness);
+  if (blurred.roughness == appearance.roughness)
+    picture.blurred.push_back(picture.bsdfs.back());
+  else
+    picture.blurred.emplace_back(blurred);
+}
+
 /// Meshes and materials of the scene; the ground comes last.
 Picture make_picture(const Scene& scene, const RenderParams& params, const MotionMesh& ground) {
   Picture picture;
@@ -125,12 +136,12 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
   picture.clamp = params.clamp;
   for (const MotionMesh& mesh : scene.meshes) picture.meshes.push_back(&mesh);
   if (scene.ground) picture.meshes.push_back(&ground);
-  for (const MotionMesh* mesh : picture.meshes) picture.bsdfs.emplace_back(mesh->appearance);
+  for (const MotionMesh* mesh : picture.meshes) add_bsdfs(picture, mesh->appearance, params.caustic_roughness);
   if (scene.ground && scene.ground->checker > 0) {
     picture.pattern.emplace(*scene.ground, scene.camera);
     Appearance second = scene.ground->appearance;
     second.base_color = scene.ground->checker_color;
-    picture.bsdfs.emplace_back(second);
+    add_bsdfs(picture, second, params.caustic_roughness);
   }
   return picture;
 }
@@ -138,7 +149,7 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
 }  // namespace
 
 struct PathTracer::Parts {
-  Parts(const Threads& run_on, StageTimes& stages) : threads(run_on), times(stages) {}
+  Parts(const Threads& run_on, StageTimes& stages) : threads(run_on), times(stages), rays(run_on.count()) {}
   const Threads& threads;
   StageTimes& times;
   RayScene rays;
@@ -151,6 +162,8 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   CHECK(params.samples >= 1);
   CHECK(params.samples <= 1 << 20);
   CHECK(params.max_bounces >= 0);
+  CHECK(params.clamp >= 0);
+  CHECK(params.caustic_roughness >= 0);
   check_meshes(scene);
   const MotionMesh ground = scene.ground ? ground_mesh(*scene.ground, scene.camera) : MotionMesh{};
   Picture picture = make_picture(scene, params, ground);

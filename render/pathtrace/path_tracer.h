@@ -1,4 +1,4 @@
-/// Unbiased path tracing of a Scene on Embree.
+/// Path tracing of a Scene on Embree.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,12 @@ namespace softreel {
 
 struct RenderParams {
   int width = 960, height = 540;
-  int samples = 16;        ///< paths a pixel, at most 2^20
-  int max_bounces = 8;     ///< scattering events of a path
-  float clamp = 0;         ///< firefly control: largest value an indirect sample may add; 0: off (unbiased)
+  int samples = 16;     ///< paths a pixel, at most 2^20
+  int max_bounces = 8;  ///< scattering events of a path
+  float clamp = 0;      ///< firefly control: largest value an indirect sample may add; 0: off
+  /// Surfaces seen by way of a wide scattering are at least this rough: caustics of glass and metal are blurred, where
+  /// they would be fireflies. 0: off. The picture is unbiased with clamp and caustic_roughness 0.
+  float caustic_roughness = 0.4f;
   bool auxiliary = false;  ///< albedo, normal and depth channels too
 };
 

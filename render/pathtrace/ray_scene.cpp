@@ -1,6 +1,7 @@
 #include "render/pathtrace/ray_scene.h"
 
 #include <cstring>
+#include <string>
 
 #include "core/base/check.h"
 #include "core/base/error.h"
@@ -17,7 +18,9 @@ namespace softreel {
 namespace {
 
 /// One instruction set on all machines: the same trees and the same intersections, bit for bit.
-constexpr const char* kDeviceConfig = "isa=avx2";
+std::string device_config(int threads) {
+  return fmt::format("isa=avx2,threads={}", threads);
+}
 
 void require_no_error(RTCDevice device, const char* what) {
   const RTCError code = rtcGetDeviceError(device);
@@ -72,7 +75,7 @@ RTCRay embree_ray(const Ray& ray) {
 }  // namespace
 
 struct RayScene::Parts {
-  Parts() : device(rtcNewDevice(kDeviceConfig)) {
+  explicit Parts(int threads) : device(rtcNewDevice(device_config(threads).c_str())) {
     require_no_error(device, "starting");
     CHECK(device != nullptr);
   }
@@ -101,7 +104,7 @@ void RayScene::Parts::attach(const MotionMesh& mesh, unsigned id) const {
   rtcReleaseGeometry(geometry);
 }
 
-RayScene::RayScene() : parts_(std::make_unique<Parts>()) {}
+RayScene::RayScene(int threads) : parts_(std::make_unique<Parts>(threads)) {}
 RayScene::~RayScene() = default;
 
 void RayScene::build(const Threads& threads, const std::vector<const MotionMesh*>& meshes) {
@@ -140,7 +143,7 @@ bool RayScene::occluded(const Ray& ray, bool coherent) const {
 
 struct RayScene::Parts {};
 
-RayScene::RayScene() {
+RayScene::RayScene(int) {
   throw input_error(
       "This build of softreel has no path tracer: it was configured with SOFTREEL_WITH_EMBREE=OFF or without Embree "
       "3.\n"

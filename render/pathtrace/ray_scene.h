@@ -29,7 +29,8 @@ struct RayHit {
 class RayScene {
  public:
   /// Throws input_error if built without Embree, work_error if Embree cannot start.
-  RayScene();
+  /// threads: how many will call it and build its trees.
+  explicit RayScene(int threads);
   ~RayScene();
 
   /// Replaces everything by trees over `meshes`, whose positions are copied. The trees depend on the meshes only: not

@@ -1,4 +1,7 @@
 // Radiometry of the path tracer: pictures whose radiance is known.
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "render/pathtrace/path_tracer.h"
@@ -147,6 +150,29 @@ TEST(PathTracer, NoiseFallsAtLeastWithTheRootOfTheSamples) {
   const double many = rms_difference(rendered(scene, small_params(24, 64)).channels[0], exact.channels[0]);
   EXPECT_LT(many, few / 4) << "exponent below -1/2: stratified samples";
   EXPECT_GT(many, few / 64);
+}
+
+TEST(PathTracer, BlurredCausticsKeepTheLightOfGlassWithoutFireflies) {
+  // Light focused by a glass ball onto the floor. Blurring spreads some of it out of the picture, but loses none.
+  Scene scene = scene_in_sky(0);
+  Appearance glass;
+  glass.transmission = 1;
+  glass.roughness = 0;
+  scene.meshes = {square(4, 0, matte(0.8f)), sphere(Vec3f(0, 0.7f, 0), 0.5f, glass)};
+  AreaLight lamp;
+  lamp.center = Vec3f(0, 3, 0);
+  lamp.u = Vec3f(0, 0, 0.5f);
+  lamp.v = Vec3f(-0.5f, 0, 0);
+  lamp.radiance = Vec3f::Constant(10);
+  scene.area_lights = {lamp};
+  scene.camera = camera_above(6, 3);
+  RenderParams params = small_params(16, 64);
+  const Image blurred = rendered(scene, params);
+  params.caustic_roughness = 0;
+  const Image sharp = rendered(scene, params);
+  EXPECT_NEAR(mean_of(blurred.channels[0]) / mean_of(sharp.channels[0]), 1, 0.25);
+  const auto largest = [](const Channel& c) { return *std::max_element(c.pixels.begin(), c.pixels.end()); };
+  EXPECT_LT(largest(blurred.channels[0]), largest(sharp.channels[0]));
 }
 
 TEST(PathTracer, ClampOnlyDarkens) {
