@@ -86,7 +86,6 @@ void StaticSolver::evaluate(StaticState& state) {
   state.energy_noise = 100 * std::numeric_limits<double>::epsilon() * terms;
   measure_scales(state);
   state.residual = std::sqrt(dot(state.forces, state.forces));
-  scale_ = std::max(scale_, state.scale);
 }
 
 void StaticSolver::measure_scales(StaticState& state) const {
@@ -134,25 +133,32 @@ SolveReport StaticSolver::solve_linear(const StaticState& state, std::span<const
   return report;
 }
 
-/// Newton's direction by the exact tangent, if it is one of descent; else by its positive part.
-bool StaticSolver::find_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction) {
+void StaticSolver::precondition(const StaticState& state) {
   assemble(state, Curvature::PositivePart);
   eliminate_held(parts_.matrix, held_, parts_.threads);
-  {
-    const ScopedStage stage(parts_.times, "simulate/update");
-    parts_.multigrid.update(parts_.matrix, held_);
-  }
-  for (const Curvature curvature : {Curvature::Signed, Curvature::PositivePart}) {
-    assemble(state, curvature);
-    eliminate_held(parts_.matrix, held_, parts_.threads);
-    std::fill(direction.begin(), direction.end(), Vec3::Zero());
-    const SolveReport report = solve_linear(state, state.forces, tolerance, direction);
-    for (std::size_t i = 0; i < direction.size(); ++i)
-      if (held_[i] != 0) direction[i].setZero();
-    remove_rigid_motion(parts_.pieces, held_pieces_, parts_.masses.mass, state.positions, direction);
-    if (report.status != SolveStatus::Breakdown && is_positive(dot(direction, state.forces))) return true;
-  }
-  return false;
+  const ScopedStage stage(parts_.times, "simulate/update");
+  parts_.multigrid.update(parts_.matrix, held_);
+}
+
+bool StaticSolver::solve_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction) {
+  std::fill(direction.begin(), direction.end(), Vec3::Zero());
+  const SolveReport report = solve_linear(state, state.forces, tolerance, direction);
+  for (std::size_t i = 0; i < direction.size(); ++i)
+    if (held_[i] != 0) direction[i].setZero();
+  remove_rigid_motion(parts_.pieces, held_pieces_, parts_.masses.mass, state.positions, direction);
+  return report.status != SolveStatus::Breakdown && is_positive(dot(direction, state.forces));
+}
+
+/// Newton's direction by the exact tangent, if that is one of descent; else by the positive part of its curvature,
+/// which also makes the cycle: it is near the tangent and always definite.
+bool StaticSolver::find_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction) {
+  precondition(state);
+  assemble(state, Curvature::Signed);
+  eliminate_held(parts_.matrix, held_, parts_.threads);
+  if (solve_direction(state, tolerance, direction)) return true;
+  // Again, because a solve that meets negative curvature may have replaced the cycle by one of its own matrix.
+  precondition(state);
+  return solve_direction(state, tolerance, direction);
 }
 
 bool StaticSolver::improves(const StaticState& from, const StaticState& to, double step, double slope) const {
@@ -194,11 +200,7 @@ bool StaticSolver::move_held(StaticState& state, std::span<const Vec3> targets) 
     right_side[i] = state.forces[i] - right_side[i];
     if (held_[i] != 0) right_side[i].setZero();
   }
-  eliminate_held(parts_.matrix, held_, parts_.threads);
-  {
-    const ScopedStage stage(parts_.times, "simulate/update");
-    parts_.multigrid.update(parts_.matrix, held_);
-  }
+  precondition(state);
   ++iterations_;
   if (solve_linear(state, right_side, 1e-3, change).status == SolveStatus::Breakdown) return false;
   for (std::size_t i = 0; i < n; ++i)
@@ -214,25 +216,25 @@ SolveReport StaticSolver::solve(StaticState& state, std::span<const Vec3> target
   const auto finish = [&](SolveStatus status) {
     report.status = status;
     report.iterations = linear_iterations_;
-    report.residual = scale_ > 0 ? state.residual / scale_ : 0.0;
+    report.residual = state.scale > 0 ? state.residual / state.scale : 0.0;
     return report;
   };
   evaluate(state);
   if (!std::isfinite(state.residual) || !move_held(state, targets)) return finish(SolveStatus::Breakdown);
   std::vector<Vec3> direction(state.positions.size());
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    if (state.residual <= tolerance * scale_) return finish(SolveStatus::Converged);
+    if (state.residual <= tolerance * state.scale) return finish(SolveStatus::Converged);
     if (state.residual <= state.round_off) return finish(SolveStatus::RoundOff);
     ++iterations_;
     // Looser far from the solution, so that the iteration converges superlinearly but no solve is finer than it helps.
-    const double relative = state.residual / scale_;
+    const double relative = state.residual / state.scale;
     const double linear =
         std::clamp(std::max(0.1 * relative, 0.3 * tolerance / relative), kBestLinearTolerance, kWorstLinearTolerance);
     if (!find_direction(state, linear, direction)) return finish(SolveStatus::Breakdown);
     if (!search_line(state, direction))
       return finish(state.residual <= 100 * state.round_off ? SolveStatus::RoundOff : SolveStatus::Breakdown);
   }
-  return finish(state.residual <= tolerance * scale_ ? SolveStatus::Converged : SolveStatus::MaxIterations);
+  return finish(state.residual <= tolerance * state.scale ? SolveStatus::Converged : SolveStatus::MaxIterations);
 }
 
 }  // namespace softreel

@@ -40,6 +40,8 @@ class StaticSolver {
   void assemble(const StaticState& state, Curvature curvature);
   SolveReport solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
                            std::span<Vec3> change);
+  void precondition(const StaticState& state);
+  bool solve_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction);
   bool find_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction);
   bool search_line(StaticState& state, std::span<const Vec3> direction);
   bool move_held(StaticState& state, std::span<const Vec3> targets);
@@ -52,7 +54,6 @@ class StaticSolver {
   const std::vector<ActivePull>& pulls_;
   std::vector<double> shares_;      ///< 1 per element
   std::vector<double> node_terms_;  ///< holds the rigid motions of pieces without a pin
-  double scale_ = 0;                ///< greatest scale so far: a body that relaxes to rest has none left at the end
   int iterations_ = 0;
   int linear_iterations_ = 0;
 };
