@@ -135,8 +135,8 @@ std::string explain_field(const std::string& path) {
         out += " " + one.path.substr(prefix.size());
     return out + "\n";
   }
-  out += fmt::format("  Type: {}{}\n  Accepted: {}\n", text->type, text->unit.empty() ? "" : ", in " + text->unit,
-                     text->accepted);
+  out += fmt::format("  Type: {}{}\n  Accepted: {}\n", text->type,
+                     text->unit.empty() ? "" : fmt::format(", in {}", text->unit), text->accepted);
   if (!text->default_value.empty()) out += fmt::format("  Default: {}\n", text->default_value);
   return out;
 }
