@@ -108,7 +108,8 @@ Codec<V> vector_of(const Range& range, const std::string& type = "[x, y, z]") {
   }
   Codec<V> codec;
   codec.type = type;
-  codec.accepted = std::to_string(kSize) + " numbers, each " + to_text(range);
+  const bool any = !std::isfinite(range.min) && !std::isfinite(range.max);
+  codec.accepted = std::to_string(kSize) + (any ? " finite numbers" : " numbers, each " + to_text(range));
   codec.parse = [held](const Place& place, const TomlValue& value) {
     const std::vector<double> numbers = parse_numbers(place, value, kSize, held);
     V out;

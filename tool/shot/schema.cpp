@@ -50,7 +50,7 @@ std::string heading(const FieldText& table) {
   for (std::size_t at = path.find('*'); at != std::string::npos; at = path.find('*')) path.replace(at, 1, "NAME");
   if (table.type == "tables by name") path += ".NAME";
   for (std::size_t at = path.find("[]"); at != std::string::npos; at = path.find("[]")) path.erase(at, 2);
-  return table.type == "list of tables" ? "[[" + path + "]]" : "[" + path + "]";
+  return table.type == "list of tables" ? fmt::format("[[{}]]", path) : fmt::format("[{}]", path);
 }
 
 /// Markdown tables split cells at bars.
@@ -132,11 +132,11 @@ std::string explain_field(const std::string& path) {
     const std::string prefix = inner_prefix(*text);
     for (const FieldText& one : field_texts())
       if (one.path.rfind(prefix, 0) == 0 && one.path.find_first_of(".[", prefix.size()) == std::string::npos)
-        out += " " + one.path.substr(prefix.size());
+        out += fmt::format(" {}", one.path.substr(prefix.size()));
     return out + "\n";
   }
-  out += fmt::format("  Type: {}{}\n  Accepted: {}\n", text->type, text->unit.empty() ? "" : ", in " + text->unit,
-                     text->accepted);
+  out += fmt::format("  Type: {}{}\n  Accepted: {}\n", text->type,
+                     text->unit.empty() ? "" : fmt::format(", in {}", text->unit), text->accepted);
   if (!text->default_value.empty()) out += fmt::format("  Default: {}\n", text->default_value);
   return out;
 }

@@ -22,7 +22,7 @@ const Table<RegionSettings>& region_table() {
   static const Table<RegionSettings> table = [] {
     using R = RegionSettings;
     Table<R> t;
-    t.sentence = "A part of the body with another stiffness or material; later regions win where they overlap.";
+    t.sentence = "A part of the body with another stiffness or material.";
     t.require("select", &R::select, selection_codec(), "", "Which part: tetrahedra whose centroid it takes.")
         .add("material", &R::material, optional_of(text()), "", "Name of the region's material.")
         .add("stiffness", &R::stiffness, optional_of(number(kPositive)), "",

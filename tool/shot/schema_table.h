@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -90,7 +91,7 @@ struct Table {
     };
     field.write = [access, print = codec.print](const S& in) { return print(std::invoke(access, in)); };
     if (default_value.empty())
-      if (const auto value = field.write(default_struct())) field.text.default_value = to_text(*value);
+      if (const auto value = field.write(*std::make_unique<S>())) field.text.default_value = to_text(*value);
     fields.push_back(std::move(field));
     return *this;
   }
@@ -189,10 +190,6 @@ struct Table {
   }
 
  private:
-  static const S& default_struct() {
-    static const S defaults{};
-    return defaults;
-  }
   static Field<S> table_field(const std::string& name, const std::string& type, const std::string& sentence) {
     Field<S> field;
     field.text = {name, type, "", "", type == "list of tables" ? "a list of tables" : "a table", sentence, true, false};
