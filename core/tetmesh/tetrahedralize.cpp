@@ -50,9 +50,9 @@ void require_size(const Job& job, double edge) {
 }
 
 /// Stuffs, mends and cleans; no promises checked yet.
-StuffedMesh fill_surface(const Job& job, double edge) {
+StuffedMesh fill_surface(const Job& job, double edge, const Vec3& shift = Vec3::Zero()) {
   require_size(job, edge);
-  const LatticeFrame frame{job.box.center(), edge};
+  const LatticeFrame frame{job.box.center() + edge * shift, edge};
   SurfaceDistance distance = [&] {
     const ScopedStage stage(job.times, "tetrahedralize/distance");
     return measure_distance(job.surface.positions, job.surface.triangles, frame, job.threads);
@@ -120,6 +120,15 @@ struct WaitingLog {
   }
 };
 
+/// Shift of the lattice, in edges: points that fill the cube evenly (the plastic number's additive recurrence). A body
+/// that is symmetric about its centre changes its count in jumps while the lattice is centred on it.
+Vec3 lattice_shift(int step) {
+  constexpr double kShares[] = {0.8191725134, 0.6710436067, 0.5497004779};
+  Vec3 shift;
+  for (int k = 0; k < 3; ++k) shift[k] = step * kShares[k] - std::floor(step * kShares[k]);
+  return shift;
+}
+
 /// Predicts an edge, fills, and corrects it by the cube root of the count's error until that is within 5 %.
 StuffedMesh fill_with_count(const Job& job, double wanted) {
   double edge = edge_for_tets(job.parts.volume(), job.parts.area(), wanted);
@@ -130,7 +139,8 @@ StuffedMesh fill_with_count(const Job& job, double wanted) {
   for (int step = 0; step < kSteps; ++step) {
     WaitingLog lines;
     const Log log = lines.sink();
-    StuffedMesh stuffed = fill_surface({job.surface, job.parts, job.box, job.name, job.threads, log, job.times}, edge);
+    StuffedMesh stuffed = fill_surface({job.surface, job.parts, job.box, job.name, job.threads, log, job.times}, edge,
+                                       lattice_shift(std::max(0, step - 1)));
     const auto count = static_cast<double>(stuffed.mesh.tets.size());
     const double error = std::abs(count / wanted - 1.0);
     if (error < best_error) {
