@@ -1,0 +1,88 @@
+#include "core/tetmesh/thin_parts.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/skinning/embedding.h"
+#include "core/tetmesh/tetrahedralize.h"
+#include "tests/support/surfaces.h"
+#include "tests/support/tet_checks.h"
+
+namespace softreel {
+namespace {
+
+/// Two balls of radius 0.5 round (-1, 0, 0) and (1, 0, 0), joined by a round rod of radius `neck`.
+SurfaceMesh make_dumbbell(double neck) {
+  return test::make_cube_sides(40, [neck](const Vec3& cube) {
+    const Vec3 p = cube.normalized();
+    const double s = 1.5 * p.x(), from_ball = (std::abs(s) - 1) / 0.5;
+    const double ball = from_ball > -1 ? 0.5 * std::sqrt(std::max(0.0, 1 - from_ball * from_ball)) : 0.0;
+    const double rod = std::abs(s) < 1 ? neck : 0.0;
+    const double across = std::hypot(p.y(), p.z());
+    const double radius = across > 0 ? std::max(ball, rod) / across : 0.0;
+    return Vec3(s, radius * p.y(), radius * p.z());
+  });
+}
+
+TetMesh fill(const SurfaceMesh& surface, double edge, std::vector<std::string>& lines) {
+  const auto collect = [&lines](const std::string& line) { lines.push_back(line); };
+  StageTimes times;
+  return tetrahedralize(surface, {edge, 0}, "dumbbell", Threads(1), {collect, collect}, times);
+}
+
+/// False where OpenVDB is not built in.
+bool can_fill() {
+  std::vector<std::string> lines;
+  try {
+    fill(test::make_sphere(1, 4, Vec3::Zero()), 0.5, lines);
+    return true;
+  } catch (const Error& error) {
+    if (std::string(error.what()).find("SOFTREEL_WITH_OPENVDB") == std::string::npos) throw;
+    return false;
+  }
+}
+
+TEST(BridgeThinParts, ARodOfAnyThinnessHoldsTheBallsTogether) {
+  if (!can_fill()) GTEST_SKIP() << "OpenVDB is not built in";
+  constexpr double kEdge = 0.2;
+  for (const double neck : {0.1, 0.05, 0.02, 0.004}) {
+    std::vector<std::string> lines;
+    const TetMesh mesh = fill(make_dumbbell(neck), kEdge, lines);
+    test::expect_good_tets(mesh);
+    test::expect_manifold_boundary(mesh);
+    EXPECT_EQ(test::count_pieces(mesh), 1) << "neck " << neck;
+    EXPECT_EQ(test::euler_characteristic(mesh), 2) << "neck " << neck << ": the rod got a hole";
+    EXPECT_EQ(lines.empty(), neck == 0.1) << "the thickening must be said; the thickest rod needs none";
+    double near_rod = 0;  // how far the thickened rod reaches from its axis
+    for (const Vec3& p : mesh.nodes)
+      if (std::abs(p.x()) < 0.25) near_rod = std::max(near_rod, std::hypot(p.y(), p.z()));
+    EXPECT_LE(near_rod, neck + 1.3 * kEdge) << "neck " << neck;
+  }
+}
+
+TEST(BridgeThinParts, WhatTheLatticeCarriesIsLeftAlone) {
+  if (!can_fill()) GTEST_SKIP() << "OpenVDB is not built in";
+  std::vector<std::string> lines;
+  fill(make_dumbbell(0.3), 0.12, lines);
+  fill(test::make_sphere(1, 16, Vec3(0.03, 0.01, 0.02)), 0.11, lines);
+  fill(test::make_torus(1, 0.3, 64, 32, Vec3::Zero()), 0.13, lines);
+  for (const std::string& line : lines) ADD_FAILURE() << line;
+}
+
+TEST(BridgeThinParts, PartsStayApartAcrossAGap) {
+  if (!can_fill()) GTEST_SKIP() << "OpenVDB is not built in";
+  // The thin rod passes over a third ball without touching it.
+  SurfaceMesh surface = make_dumbbell(0.02);
+  const SurfaceMesh ball = test::make_sphere(0.3, 16, Vec3(0, -0.75, 0));
+  const auto first = static_cast<Index>(surface.positions.size());
+  surface.positions.insert(surface.positions.end(), ball.positions.begin(), ball.positions.end());
+  for (const Triangle& t : ball.triangles) surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  std::vector<std::string> lines;
+  const TetMesh mesh = fill(surface, 0.15, lines);
+  EXPECT_EQ(test::count_pieces(mesh), 2);
+}
+
+}  // namespace
+}  // namespace softreel
