@@ -206,6 +206,9 @@ const Table<RenderSettings>& render_table() {
         .add(
             "clamp", [](auto& r) -> auto& { return r.params.clamp; }, single(kNotNegative), "radiance",
             "Most that one indirect sample may add: removes bright specks, darkens a little; 0: off.")
+        .add(
+            "caustic_roughness", [](auto& r) -> auto& { return r.params.caustic_roughness; }, single(kShare), "",
+            "Least roughness of what matt surfaces see: blurs caustics that would be bright specks; 0: off.")
         .add("shutter", &R::shutter, number(kShare), "frames",
              "How long the shutter is open, up to the frame; 0: no motion blur.")
         .add("blur_segments", &R::blur_segments, whole<int>(1, 64), "",

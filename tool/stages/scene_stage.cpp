@@ -137,7 +137,7 @@ StageKey picture_key(const Scene& scene, const RenderParams& params) {
     key.add(ground->checker).add(ground->checker_color);
   }
   key.add(params.width).add(params.height).add(params.samples).add(params.max_bounces).add(params.clamp);
-  key.add(params.auxiliary);
+  key.add(params.caustic_roughness).add(params.auxiliary);
   return key.key();
 }
 
