@@ -19,7 +19,7 @@ struct RenderParams {
   float clamp = 0;      ///< firefly control: largest value an indirect sample may add; 0: off
   /// Surfaces seen by way of a wide scattering are at least this rough: caustics of glass and metal are blurred, where
   /// they would be fireflies. 0: off. The picture is unbiased with clamp and caustic_roughness 0.
-  float caustic_roughness = 0.5f;
+  float caustic_roughness = 0.4f;
   bool auxiliary = false;  ///< albedo, normal and depth channels too
 };
 

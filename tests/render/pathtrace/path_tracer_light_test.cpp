@@ -153,7 +153,8 @@ TEST(PathTracer, NoiseFallsAtLeastWithTheRootOfTheSamples) {
 }
 
 TEST(PathTracer, BlurredCausticsKeepTheLightOfGlassWithoutFireflies) {
-  // Light focused by a glass ball onto the floor. Blurring spreads some of it out of the picture, but loses none.
+  // Light focused by a glass ball onto the floor. Blurring spreads it and, the
+  // compensation of rough glass not being reciprocal, costs a little of it.
   Scene scene = scene_in_sky(0);
   Appearance glass;
   glass.transmission = 1;
@@ -165,12 +166,12 @@ TEST(PathTracer, BlurredCausticsKeepTheLightOfGlassWithoutFireflies) {
   lamp.v = Vec3f(-0.5f, 0, 0);
   lamp.radiance = Vec3f::Constant(10);
   scene.area_lights = {lamp};
-  scene.camera = camera_above(6, 3);
+  scene.camera = camera_above(6, 8);
   RenderParams params = small_params(16, 64);
   const Image blurred = rendered(scene, params);
   params.caustic_roughness = 0;
   const Image sharp = rendered(scene, params);
-  EXPECT_NEAR(mean_of(blurred.channels[0]) / mean_of(sharp.channels[0]), 1, 0.25);
+  EXPECT_NEAR(mean_of(blurred.channels[0]) / mean_of(sharp.channels[0]), 1, 0.15);
   const auto largest = [](const Channel& c) { return *std::max_element(c.pixels.begin(), c.pixels.end()); };
   EXPECT_LT(largest(blurred.channels[0]), largest(sharp.channels[0]));
 }
