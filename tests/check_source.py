@@ -18,7 +18,7 @@ RENDER_MAY = {"base", "mesh"}
 
 # Header pattern, the only files that may include it.
 FENCES = [
-    (r"<assimp/", r"core/mesh/mesh_import\.cpp$"),
+    (r"<assimp/", r"core/mesh/readers/mesh_import\.cpp$"),
     (r"<openvdb/", r"core/tetmesh/signed_distance\.cpp$"),
     (r"<(tbb|oneapi)/", r"core/base/parallel\.(h|cpp)$"),
     (r"<embree3/", r"render/pathtrace/ray_scene\.cpp$"),

@@ -5,17 +5,13 @@
 #include <thread>
 #include <vector>
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "core/base/check.h"
 
 namespace softreel {
-
-struct Threads::Arena {
-  explicit Arena(int count) : arena(count) {}
-  tbb::task_arena arena;
-};
 
 namespace {
 
@@ -30,6 +26,15 @@ void rethrow_first(const std::vector<std::exception_ptr>& failures) {
 }
 
 }  // namespace
+
+struct Threads::Arena {
+  explicit Arena(int count)
+      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(count, processors()))),
+        arena(count) {}
+  // Without it oneTBB grants no more threads than processors, and says so on standard error.
+  tbb::global_control limit;
+  tbb::task_arena arena;
+};
 
 Threads::Threads(int count) : count_(count == 0 ? processors() : count) {
   CHECK(count >= 0);

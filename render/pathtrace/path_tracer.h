@@ -23,7 +23,7 @@ struct RenderParams {
   bool auxiliary = false;  ///< albedo, normal and depth channels too
 };
 
-/// Renders frames of one sequence: the trees are built from scratch when topology changes, else refitted.
+/// Renders frames of one sequence. The trees are built for each frame alone, so that no frame knows of earlier ones.
 ///
 /// Bits do not depend on the thread count, on earlier frames or on the machine's vector width: samples are keyed by
 /// pixel and by a hash of geometry and camera (design 4.6). Not thread-safe; one frame at a time.

@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include "core/mesh/mesh_check.h"
-#include "core/mesh/mesh_import.h"
 #include "core/mesh/mesh_repair.h"
+#include "core/mesh/readers/mesh_import.h"
 #include "tool/commands/commands.h"
 
 namespace softreel {

@@ -6,9 +6,9 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/mesh/mesh_import.h"
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/placement.h"
+#include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/tetrahedralize.h"

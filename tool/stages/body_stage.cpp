@@ -7,8 +7,8 @@
 
 #include "core/base/check.h"
 #include "core/mesh/mesh_check.h"
-#include "core/mesh/mesh_import.h"
 #include "core/mesh/mesh_repair.h"
+#include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/tetrahedralize.h"
 #include "tool/stages/bytes.h"
 

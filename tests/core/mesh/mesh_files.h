@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/mesh/mesh_import.h"
 #include "core/mesh/polygon_triangulation.h"
+#include "core/mesh/readers/mesh_import.h"
 
 namespace softreel::testing {
 

@@ -1,4 +1,4 @@
-#include "core/mesh/mesh_import.h"
+#include "core/mesh/readers/mesh_import.h"
 
 #include <algorithm>
 #include <cctype>
