@@ -55,6 +55,12 @@ HeldMotion::HeldMotion(const std::vector<Tet>& tets, std::span<const std::uint8_
       start_(positions.begin(), positions.end()),
       targets_(targets.begin(), targets.end()) {}
 
+bool HeldMotion::moves() const {
+  for (std::size_t i = 0; i < start_.size(); ++i)
+    if (clusters_.of_node[i] >= 0 && start_[i] != targets_[i]) return true;
+  return false;
+}
+
 std::vector<Vec3> HeldMotion::at(double share) const {
   std::vector<Vec3> places(start_.size(), Vec3::Zero());
   for (std::size_t i = 0; i < places.size(); ++i) {

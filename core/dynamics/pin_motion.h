@@ -35,6 +35,8 @@ class HeldMotion {
   HeldMotion(const std::vector<Tet>& tets, std::span<const std::uint8_t> held, std::span<const Vec3> positions,
              std::span<const Vec3> targets);
 
+  /// False if every held node is at its target.
+  bool moves() const;
   /// Places of the held nodes after `share` of the way; exactly the targets at 1. Zero elsewhere.
   std::vector<Vec3> at(double share) const;
 

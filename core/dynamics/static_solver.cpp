@@ -12,7 +12,11 @@ namespace {
 
 constexpr double kArmijo = 1e-4;  ///< share of the promised decrease of energy that a step must reach
 constexpr int kHalvings = 16;     ///< of a step in the line search
-constexpr double kWorstLinearTolerance = 0.1;
+constexpr int kIndefiniteIterations =
+    100;                              ///< of a solve that may be indefinite: with its cycle a definite one takes 30
+constexpr double kLongestStep = 256;  ///< times the full step, where the tangent has negative curvature
+constexpr double kNearer = 0.5;       ///< residual of an unfinished linear solve whose result is still of use
+constexpr double kWorstLinearTolerance = 1e-3;
 constexpr double kBestLinearTolerance = 1e-10;
 /// Stiffness against rigid motion of pieces without a pin, relative to the mean stiffness of a node: far below the
 /// softest deformation of any mesh that fits in memory, far above round-off.
@@ -125,10 +129,10 @@ void StaticSolver::assemble(const StaticState& state, Curvature curvature) {
 }
 
 SolveReport StaticSolver::solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
-                                       std::span<Vec3> change) {
+                                       int max_iterations, std::span<Vec3> change) {
   const ScopedStage stage(parts_.times, "simulate/solve");
-  const SolveReport report = parts_.multigrid.solve(parts_.matrix, right_side, change, tolerance, 0.1 * state.round_off,
-                                                    parts_.params.max_iterations);
+  const SolveReport report =
+      parts_.multigrid.solve(parts_.matrix, right_side, change, tolerance, 0.1 * state.round_off, max_iterations);
   linear_iterations_ += report.iterations;
   return report;
 }
@@ -140,13 +144,16 @@ void StaticSolver::precondition(const StaticState& state) {
   parts_.multigrid.update(parts_.matrix, held_);
 }
 
-bool StaticSolver::solve_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction) {
+bool StaticSolver::solve_direction(const StaticState& state, double tolerance, int max_iterations,
+                                   std::vector<Vec3>& direction) {
   std::fill(direction.begin(), direction.end(), Vec3::Zero());
-  const SolveReport report = solve_linear(state, state.forces, tolerance, direction);
+  const SolveReport report = solve_linear(state, state.forces, tolerance, max_iterations, direction);
   for (std::size_t i = 0; i < direction.size(); ++i)
     if (held_[i] != 0) direction[i].setZero();
   remove_rigid_motion(parts_.pieces, held_pieces_, parts_.masses.mass, state.positions, direction);
-  return report.status != SolveStatus::Breakdown && is_positive(dot(direction, state.forces));
+  // An unfinished solve is a direction, too, if it got nearer; one that met negative curvature may be far off.
+  const bool nearer = report.ok() || (report.status == SolveStatus::MaxIterations && report.residual < kNearer);
+  return nearer && is_positive(dot(direction, state.forces));
 }
 
 /// Newton's direction by the exact tangent, if that is one of descent; else by the positive part of its curvature,
@@ -155,10 +162,12 @@ bool StaticSolver::find_direction(const StaticState& state, double tolerance, st
   precondition(state);
   assemble(state, Curvature::Signed);
   eliminate_held(parts_.matrix, held_, parts_.threads);
-  if (solve_direction(state, tolerance, direction)) return true;
+  const int all = parts_.params.max_iterations;
+  unstable_ = !solve_direction(state, tolerance, std::min(all, kIndefiniteIterations), direction);
+  if (!unstable_) return true;
   // Again, because a solve that meets negative curvature may have replaced the cycle by one of its own matrix.
   precondition(state);
-  return solve_direction(state, tolerance, direction);
+  return solve_direction(state, tolerance, all, direction);
 }
 
 bool StaticSolver::improves(const StaticState& from, const StaticState& to, double step, double slope) const {
@@ -169,14 +178,27 @@ bool StaticSolver::improves(const StaticState& from, const StaticState& to, doub
   return to.energy <= from.energy + std::max(from.energy_noise, to.energy_noise) && to.residual < from.residual;
 }
 
+StaticState StaticSolver::moved(const StaticState& state, std::span<const Vec3> direction, double step) {
+  StaticState next{state.positions, state.rotations, {}};
+  for (std::size_t i = 0; i < direction.size(); ++i) next.positions[i] += step * direction[i];
+  evaluate(next);
+  return next;
+}
+
+/// Halves the step until it improves. Where the exact tangent has negative curvature (a body about to buckle) the full
+/// step of its positive part is far too short, so there it is doubled as long as the energy falls.
 bool StaticSolver::search_line(StaticState& state, std::span<const Vec3> direction) {
   const double slope = dot(direction, state.forces);
   double step = 1;
   for (int halving = 0; halving <= kHalvings; ++halving, step *= 0.5) {
-    StaticState next{state.positions, state.rotations, {}};
-    for (std::size_t i = 0; i < direction.size(); ++i) next.positions[i] += step * direction[i];
-    evaluate(next);
+    StaticState next = moved(state, direction, step);
     if (!improves(state, next, step, slope)) continue;
+    while (unstable_ && step >= 1 && step < kLongestStep) {
+      StaticState farther = moved(state, direction, 2 * step);
+      if (!(farther.energy < next.energy)) break;
+      next = std::move(farther);
+      step *= 2;
+    }
     state = std::move(next);
     return true;
   }
@@ -202,7 +224,9 @@ bool StaticSolver::move_held(StaticState& state, std::span<const Vec3> targets) 
   }
   precondition(state);
   ++iterations_;
-  if (solve_linear(state, right_side, 1e-3, change).status == SolveStatus::Breakdown) return false;
+  if (solve_linear(state, right_side, kWorstLinearTolerance, parts_.params.max_iterations, change).status ==
+      SolveStatus::Breakdown)
+    return false;
   for (std::size_t i = 0; i < n; ++i)
     state.positions[i] = held_[i] != 0 ? targets[i] : Vec3(state.positions[i] + change[i]);
   evaluate(state);

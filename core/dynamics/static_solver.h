@@ -39,10 +39,11 @@ class StaticSolver {
  private:
   void assemble(const StaticState& state, Curvature curvature);
   SolveReport solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
-                           std::span<Vec3> change);
+                           int max_iterations, std::span<Vec3> change);
   void precondition(const StaticState& state);
-  bool solve_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction);
+  bool solve_direction(const StaticState& state, double tolerance, int max_iterations, std::vector<Vec3>& direction);
   bool find_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction);
+  StaticState moved(const StaticState& state, std::span<const Vec3> direction, double step);
   bool search_line(StaticState& state, std::span<const Vec3> direction);
   bool move_held(StaticState& state, std::span<const Vec3> targets);
   bool improves(const StaticState& from, const StaticState& to, double step, double slope) const;
@@ -54,6 +55,7 @@ class StaticSolver {
   const std::vector<ActivePull>& pulls_;
   std::vector<double> shares_;      ///< 1 per element
   std::vector<double> node_terms_;  ///< holds the rigid motions of pieces without a pin
+  bool unstable_ = false;           ///< the exact tangent gave no direction of descent at the present state
   int iterations_ = 0;
   int linear_iterations_ = 0;
 };

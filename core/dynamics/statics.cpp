@@ -34,8 +34,7 @@ void check_held(const Simulator::Parts& parts, const std::vector<std::uint8_t>& 
   throw input_error(fmt::format(
       "{}: at frame {} no pin or pull holds {} (near ({:.6g}, {:.6g}, {:.6g})), so under gravity it falls for ever and "
       "has no equilibrium.\n  Accepted: a pin or pull on every piece, or no gravity. Add a pin, set gravity to 0, or "
-      "use "
-      "mode = \"dynamic\" with start = \"rest\".",
+      "use mode = \"dynamic\" with start = \"rest\".",
       parts.model.name, frame, held.size() == 1 ? "the body" : fmt::format("piece {} of the body", piece), at.x(),
       at.y(), at.z()));
 }
@@ -51,7 +50,8 @@ SolveReport solve_in_steps(const Simulator::Parts& parts, StaticSolver& solver, 
     StaticState next{state.positions, state.rotations, {}};
     const int left = parts.params.max_newton_iterations - solver.iterations();
     // A first, full move shows by kStepIterations whether it works; what remains of the limit is for smaller ones.
-    const int allowed = std::max(0, last && done > 0 ? left : std::min(left, kStepIterations));
+    const bool may_halve = motion.moves() && !(last && done > 0);
+    const int allowed = std::max(0, may_halve ? std::min(left, kStepIterations) : left);
     const SolveReport report =
         solver.solve(next, motion.at(reached), last ? parts.params.force_tolerance : kStepTolerance, allowed);
     report_step(total, report);
@@ -63,7 +63,7 @@ SolveReport solve_in_steps(const Simulator::Parts& parts, StaticSolver& solver, 
       continue;
     }
     step *= 0.5;
-    if (step < kSmallestLoadStep || left <= 0) {
+    if (step < kSmallestLoadStep || left <= 0 || !motion.moves()) {
       state = std::move(next);
       return total;
     }

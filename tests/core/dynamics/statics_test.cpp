@@ -239,6 +239,38 @@ TEST(FindEquilibrium, StaysAtRestInDynamics) {
   EXPECT_LT(largest_distance(bench.simulator.state().positions, start), 1e-10);
 }
 
+TEST(FindEquilibrium, LetsABodyOnOneSpringSwingDownBelowIt) {
+  BodyModel model = body_model(small_bar(), rubber());
+  model.gravity = Vec3(0, -1, 0);
+  model.pulls = {testing::make_pull({0}, {}, 1e4)};
+  SolverParams params;
+  params.force_tolerance = 1e-9;
+  Bench bench(model, params);
+  const StepReport report = bench.simulator.find_equilibrium(1);
+  ASSERT_TRUE(report.ok()) << report.culprit;
+  const double weight = 1000 * 0.6 * 0.3 * 0.3;
+  const Vec3 held = bench.simulator.state().positions[0];
+  EXPECT_NEAR(held.y(), -weight / 1e4, 1e-6);
+  Vec3 center = Vec3::Zero();  // equal volumes: each element counts alike
+  for (const Tet& tet : model.mesh.tets)
+    for (const Index node : tet) center += bench.simulator.state().positions[static_cast<std::size_t>(node)];
+  center /= 4.0 * static_cast<double>(model.mesh.tets.size());
+  EXPECT_LT(std::hypot(center.x() - held.x(), center.z() - held.z()), 1e-5);
+  EXPECT_LT(center.y(), held.y() - 0.3);
+}
+
+TEST(FindEquilibrium, FindsABuckledShapeUnderHeavyCompression) {
+  BodyModel model = body_model(testing::kuhn_bar({12, 3, 3}, Vec3(1, 0.25, 0.25)), rubber());
+  model.gravity.setZero();
+  Transform push;
+  push.translate.x() = -0.3;
+  model.pins = {testing::make_pin(plane_x(model.mesh, 0)), testing::make_pin(plane_x(model.mesh, 1), push)};
+  Bench bench(model);
+  const StepReport report = bench.simulator.find_equilibrium(1);
+  ASSERT_TRUE(report.ok()) << report.culprit;
+  EXPECT_LE(report.solve.residual, SolverParams{}.force_tolerance);
+}
+
 TEST(FindEquilibrium, SaysThatAnUnheldBodyFallsForEver) {
   Bench bench(body_model(small_bar(), rubber()));
   try {
