@@ -93,8 +93,7 @@ std::vector<double> parse_numbers(const Place& place, const TomlValue& value, st
   if (items->size() != count)
     throw value_error(place, value, fmt::format("the list has {} values, not {}", items->size(), count));
   std::vector<double> numbers;
-  for (const TomlValue& item : *items)
-    numbers.push_back(parse_number(place.part(fmt::format("[{}]", numbers.size())), item, range));
+  for (const TomlValue& item : *items) numbers.push_back(parse_number(place.item(numbers.size()), item, range));
   return numbers;
 }
 
@@ -236,7 +235,7 @@ void check_key_frames(const Place& place, const TomlValue& list, const std::vect
     if (frames[i] <= frames[i - 1]) {
       const TomlValue& item = (*list.array())[i];
       throw value_error(
-          place.part(fmt::format("[{}]", i)), item,
+          place.item(i), item,
           fmt::format("its frame {} does not come after the frame {} of the key before it", frames[i], frames[i - 1]),
           "Sort the keys by frame, one key a frame.");
     }

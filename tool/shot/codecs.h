@@ -197,7 +197,7 @@ Codec<Track<T>> keyed(const Codec<T>& codec, const std::string& unit) {
     const std::size_t problems_before = place.problems->size();
     for (const TomlValue& item : *items) {
       KeyText<T> key;
-      read_table(table, place.part("[" + std::to_string(frames.size()) + "]"), item, key);
+      read_table(table, place.item(frames.size()), item, key);
       frames.push_back(key.frame);
       track.keys.push_back({key.frame, key.value, key.ease});
     }

@@ -128,7 +128,7 @@ Codec<std::vector<int>> frame_list_codec() {
     if (items->empty()) throw value_error(place, value, "the list is empty");
     std::vector<int> frames;
     for (const TomlValue& item : *items) {
-      const Place at = place.part(fmt::format("[{}]", frames.size()));
+      const Place at = place.item(frames.size());
       frames.push_back(static_cast<int>(parse_whole(at, item, -kLastFrame, kLastFrame)));
       if (frames.size() > 1 && frames.back() <= frames[frames.size() - 2])
         throw value_error(at, item, "it does not come after the frame before it", "Sort the frames, each once.");

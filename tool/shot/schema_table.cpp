@@ -19,6 +19,10 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
+Place Place::item(std::size_t index) const {
+  return part(fmt::format("[{}]", index));
+}
+
 Error value_error(const Place& place, const TomlValue& value, const std::string& reason, const std::string& next) {
   std::string step = next;
   if (step.empty() && place.text != nullptr && !place.text->required && !place.text->default_value.empty())

@@ -23,6 +23,8 @@ struct Place {
 
   /// A part of this field under the same description: "[1]", ".value".
   Place part(const std::string& suffix) const { return {path + suffix, text, problems}; }
+  /// The entry of this list at a position.
+  Place item(std::size_t index) const;
 };
 
 /// The five-part error for a value: `reason` completes "FIELD = VALUE is wrong because ...". What is accepted and what
@@ -146,7 +148,7 @@ struct Table {
       if (value.array() == nullptr) throw value_error(place, value, "it is " + kind_name(value));
       auto& items = std::invoke(access, out);
       for (const TomlValue& item : *value.array()) {
-        const Place at = place.part("[" + std::to_string(items.size()) + "]");
+        const Place at = place.item(items.size());
         read_table(inner, at, item, items.emplace_back());
       }
     };

@@ -195,8 +195,8 @@ void apply_override(TomlValue& document, const Override& override_value) {
       walked += fmt::format("[{}]", step.index);
       pattern += "[]";
     } else {
-      walked += (walked.empty() ? "" : ".") + key_text(step.key);
-      pattern += (pattern.empty() ? "" : ".") + (named ? "*" : step.key);
+      walked += fmt::format("{}{}", walked.empty() ? "" : ".", key_text(step.key));
+      pattern += fmt::format("{}{}", pattern.empty() ? "" : ".", named ? "*" : step.key);
     }
   }
   *at = std::move(value);

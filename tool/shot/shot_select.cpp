@@ -169,7 +169,7 @@ Motion parse_motion(const Place& place, const TomlValue& value) {
   std::vector<TransformKeyText> texts;
   const std::size_t problems_before = place.problems->size();
   for (const TomlValue& item : *value.array()) {
-    const Place at = place.part(fmt::format("[{}]", texts.size()));
+    const Place at = place.item(texts.size());
     read_table(transform_key_table(), at, item, texts.emplace_back());
     frames.push_back(texts.back().frame);
   }
@@ -214,7 +214,7 @@ Codec<Selection> selection_codec() {
     if (count == 0) throw value_error(place, value, "the list is empty", "Add a selection.");
     for (std::size_t i = 0; i < count; ++i) {
       TermText term;
-      const Place at = items == nullptr ? place : place.part(fmt::format("[{}]", i));
+      const Place at = items == nullptr ? place : place.item(i);
       read_table(term_table(), at, items == nullptr ? value : (*items)[i], term);
       selection.terms.push_back(to_term(term));
     }
@@ -240,8 +240,7 @@ Codec<std::vector<FrameRange>> frame_ranges_codec() {
     if (items->empty()) throw value_error(place, value, "the list is empty: it would never be active");
     if (items->front().array() == nullptr) return std::vector<FrameRange>{parse_range(place, value)};
     std::vector<FrameRange> ranges;
-    for (const TomlValue& item : *items)
-      ranges.push_back(parse_range(place.part(fmt::format("[{}]", ranges.size())), item));
+    for (const TomlValue& item : *items) ranges.push_back(parse_range(place.item(ranges.size()), item));
     return ranges;
   };
   codec.print = [](const std::vector<FrameRange>& ranges) -> std::optional<TomlValue> {
