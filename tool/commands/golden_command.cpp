@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/error.h"
 #include "render/image/image_compare.h"
 #include "render/pathtrace/path_tracer.h"
 #include "tool/commands/commands.h"
@@ -19,6 +20,12 @@ std::set<int> golden_frames(const Shot& shot) {
   const ShotSettings& settings = shot.settings;
   if (shot.golden.frames.empty())
     return {settings.first_frame, (settings.first_frame + settings.last_frame) / 2, settings.last_frame};
+  for (const int frame : shot.golden.frames)
+    if (frame < settings.first_frame || frame > settings.last_frame)
+      throw input_error(
+          fmt::format("{}: golden.frames has {}, which is no frame of the shot.\n  Accepted: {} to {}. Change "
+                      "it, or shot.frames.",
+                      shot.path, frame, settings.first_frame, settings.last_frame));
   return {shot.golden.frames.begin(), shot.golden.frames.end()};
 }
 

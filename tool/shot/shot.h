@@ -47,6 +47,7 @@ struct MaterialSettings {
   Appearance appearance;
 };
 
+/// Where regions overlap, the later one holds.
 struct RegionSettings {
   Selection select;
   std::optional<std::string> material;  ///< name of a material, or

@@ -72,6 +72,7 @@ const Mistake kMistakes[] = {
     {"UnknownExportFormat", "softreel export {0}/shot.toml --format fbx", 2, {"fbx", "obj, ply, pc2"}},
     {"TetrahedraToUnknownFormat", "softreel tetrahedralize {0}/sphere.obj -o {0}/a.xyz", 2, {".xyz", ".vtu"}},
     {"InspectMissing", "softreel inspect {0}/none.ply", 2, {"none.ply"}},
+    {"GoldenFrameOutside", "softreel golden {0}/shot.toml --set 'golden.frames=[9]'", 2, {"golden.frames", "9"}},
     {"SetWithoutValue", "softreel check {0}/shot.toml --set render.samples", 2, {"render.samples", "="}},
 };
 

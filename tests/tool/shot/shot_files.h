@@ -232,6 +232,7 @@ height = 360
 samples = 64
 max_bounces = 4
 clamp = 10
+caustic_roughness = 0.2
 shutter = 0.5
 blur_segments = 4
 auxiliary = true

@@ -71,6 +71,7 @@ TEST_F(ShotRanges, EndWhereTheReferenceSays) {
       {"render.samples", {"1", "1048576"}, {"0", "1048577"}},
       {"render.max_bounces", {"0", "1024"}, {"-1", "1025"}},
       {"render.clamp", not_negative, negative},
+      {"render.caustic_roughness", share, no_share},
       {"render.shutter", share, no_share},
       {"render.blur_segments", {"1", "64"}, {"0", "65"}},
       {"output.exposure", {"-64", "64"}, {"-64.1", "64.1"}},
