@@ -14,7 +14,7 @@ namespace {
 constexpr double kStepSecondsPerTet = 4e-6;    ///< one dynamic step, two threads
 constexpr double kStaticStepsPerFrame = 25;    ///< a static frame costs about this many steps
 constexpr double kFillSecondsPerTet = 1.5e-5;  ///< distance, lattice, embedding
-constexpr double kPathsPerSecond = 3e6;        ///< two threads
+constexpr double kPathsPerSecond = 2e6;        ///< two threads
 constexpr double kBytesPerTet = 1200;          ///< matrix, hierarchy, state
 constexpr double kBytesPerTriangle = 700;      ///< surface, normals, trees
 constexpr double kBytesPerPixel = 48;

@@ -157,6 +157,32 @@ TEST(Render, EncodesAMovieOfAllFrames) {
   EXPECT_EQ(probe.out, "64,36,4\n") << probe.err;
 }
 
+TEST(Render, PrerollIsSimulatedButNotRendered) {
+  const std::string folder = shot_folder("preroll");
+  const json report = render(folder, folder + "/out", "--set shot.preroll=5");
+  EXPECT_EQ(report["simulation"]["frames"], 9);
+  EXPECT_EQ(files_under(folder + "/out").size(), 4U + 9U + 1U + 3U) << "pictures, frames, tetrahedra, reports";
+  // Five frames under its weight have moved the body before the first picture.
+  render(folder, folder + "/without");
+  EXPECT_NE(read_text(folder + "/out/ball.0001.png"), read_text(folder + "/without/ball.0001.png"));
+}
+
+TEST(Render, AStepThatCannotBeSolvedNamesFrameBodyAndConstraintAndKeepsTheFramesBefore) {
+  const std::string folder = shot_folder("contradiction");
+  write_text(folder + "/shot.toml", sphere_shot(R"(
+[[body.ball.pin]]
+select = { box = { min = [0, 0, 0], max = [1, 0.2, 1] }, unit = "box" }
+keys = [ { frame = 1, translate = [0.1, 0, 0] } ]
+active = [3, 4]
+)"));
+  const Outcome outcome = run(fmt::format("softreel render {0}/shot.toml --output {0}/out --quiet", folder));
+  EXPECT_EQ(outcome.status, 1);
+  for (const char* part : {"frame 3", "\"ball\"", "body.ball.pin[0]", "body.ball.pin[1]"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << part << "\n" << outcome.err;
+  EXPECT_TRUE(exists(folder + "/out/ball.0002.png"));
+  EXPECT_FALSE(exists(folder + "/out/ball.0003.png"));
+}
+
 TEST(Render, StaticFramesThatAreEqualAreTracedOnce) {
   const std::string folder = shot_folder("static");
   const json report = render(folder, folder + "/out",
