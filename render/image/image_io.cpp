@@ -134,6 +134,7 @@ std::vector<std::uint8_t> encode_png(const DisplayImage& image) {
   CHECK(image.pixels.size() == 3 * pixel_count(image.width, image.height));
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
+  header.flags = PNG_IMAGE_FLAG_FAST;  // four times as quick, an eighth larger: noise does not compress
   header.width = static_cast<png_uint_32>(image.width);
   header.height = static_cast<png_uint_32>(image.height);
   header.format = PNG_FORMAT_RGB;

@@ -58,6 +58,7 @@ float LightSet::importance(std::size_t k, const Receiver& receiver) const {
 }
 
 float LightSet::probability(std::size_t k, const Receiver& receiver) const {
+  if (receiver.every_light) return importance(k, receiver) > 0 ? 1.0f : 0.0f;
   if (count() == 1) return 1;
   float sum = 0;
   for (std::size_t j = 0; j < count(); ++j) sum += importance(j, receiver);
@@ -87,19 +88,27 @@ bool LightSet::sample(const Receiver& receiver, float choice, const Vec2f& u, Li
   } else if (importance(0, receiver) <= 0) {
     return false;
   }
-  point_like = false;
-  bool found = true;
-  if (chosen < rectangles_.size()) {
-    found = rectangles_[chosen].sample(receiver.position, u, sample);
-  } else if (chosen < rectangles_.size() + suns_.size()) {
-    const Sun& sun = suns_[chosen - rectangles_.size()];
-    point_like = sun.pdf == 0;
-    found = sample_sun(sun, u, sample);
-  } else {
-    sample = environment_.sample(u);
-  }
+  const bool found = sample_from(chosen, receiver, u, sample, point_like);
   sample.pdf *= share;
   return found && sample.pdf > 0;
+}
+
+bool LightSet::sample_light(std::size_t k, const Receiver& receiver, const Vec2f& u, LightSample& sample,
+                            bool& point_like) const {
+  return importance(k, receiver) > 0 && sample_from(k, receiver, u, sample, point_like) && sample.pdf > 0;
+}
+
+bool LightSet::sample_from(std::size_t k, const Receiver& receiver, const Vec2f& u, LightSample& sample,
+                           bool& point_like) const {
+  point_like = false;
+  if (k < rectangles_.size()) return rectangles_[k].sample(receiver.position, u, sample);
+  if (k < rectangles_.size() + suns_.size()) {
+    const Sun& sun = suns_[k - rectangles_.size()];
+    point_like = sun.pdf == 0;
+    return sample_sun(sun, u, sample);
+  }
+  sample = environment_.sample(u);
+  return true;
 }
 
 Vec3f LightSet::area_lights_along(const Vec3f& position, const Vec3f& direction, float distance,

@@ -15,6 +15,8 @@ struct Receiver {
   Vec3f position;
   Vec3f normal;             ///< unit, towards the viewer
   bool both_sides = false;  ///< light from behind the surface counts too (glass)
+  /// Every light is sampled there instead of one that is chosen.
+  bool every_light = false;
 };
 
 /// How a ray's direction was found, for weighing light that it meets against sampling the lights.
@@ -34,6 +36,12 @@ class LightSet {
   /// choice. False if no light reaches the receiver. `point_like` is set for a sun without extent.
   bool sample(const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample, bool& point_like) const;
 
+  /// Number of lights that can be sampled: area lights, then suns, then the environment.
+  std::size_t count() const { return rectangles_.size() + suns_.size() + (environment_.sampled() ? 1 : 0); }
+  /// A direction towards light k, as `sample`, but without a choice in sample.pdf.
+  bool sample_light(std::size_t k, const Receiver& receiver, const Vec2f& u, LightSample& sample,
+                    bool& point_like) const;
+
   /// Radiance of the area lights that a ray passes within `distance`, weighed.
   Vec3f area_lights_along(const Vec3f& position, const Vec3f& direction, float distance, const RayOrigin& origin) const;
   /// Radiance of suns and environment from a direction, weighed.
@@ -50,11 +58,13 @@ class LightSet {
   };
 
   static Sun make_sun(const SunLight& light);
+  bool sample_from(std::size_t k, const Receiver& receiver, const Vec2f& u, LightSample& sample,
+                   bool& point_like) const;
   bool sample_sun(const Sun& sun, const Vec2f& u, LightSample& sample) const;
   /// Rough irradiance of light k at a receiver: area lights, then suns, then the environment.
   float importance(std::size_t k, const Receiver& receiver) const;
+  /// Of light k to be sampled at the receiver.
   float probability(std::size_t k, const Receiver& receiver) const;
-  std::size_t count() const { return rectangles_.size() + suns_.size() + (environment_.sampled() ? 1 : 0); }
 
   std::vector<RectangleLight> rectangles_;
   std::vector<Sun> suns_;

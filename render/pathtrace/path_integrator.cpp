@@ -6,6 +6,7 @@ namespace {
 
 /// Paths of this many scattering events may be ended by chance.
 constexpr int kRouletteStart = 3;
+constexpr std::size_t kFewLights = 4;
 
 /// Dimensions of a scattering event's block.
 enum Dimension : std::size_t { kLightU = 0, kLightV = 1, kBsdfU = 2, kBsdfV = 3, kLobe = 4, kLight = 5, kRoulette = 6 };
@@ -39,11 +40,21 @@ void PathIntegrator::collect(const Ray& ray, bool hit, float distance) {
 
 void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
                                 const Vec3f& to_viewer, const SampleBlock& numbers) {
-  LightSample light;
-  bool point_like = false;
-  if (!picture_.lights->sample(origin_.receiver, numbers[kLight], Vec2f(numbers[kLightU], numbers[kLightV]), light,
-                               point_like))
-    return;
+  const LightSet& lights = *picture_.lights;
+  const Vec2f u(numbers[kLightU], numbers[kLightV]);
+  const std::size_t rays = origin_.receiver.every_light ? lights.count() : 1;
+  for (std::size_t k = 0; k < rays; ++k) {
+    LightSample light;
+    bool point_like = false;
+    const bool found = origin_.receiver.every_light
+                           ? lights.sample_light(k, origin_.receiver, u, light, point_like)
+                           : lights.sample(origin_.receiver, numbers[kLight], u, light, point_like);
+    if (found) add_light(bsdf, point, frame, to_viewer, light, point_like);
+  }
+}
+
+void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
+                               const Vec3f& to_viewer, const LightSample& light, bool point_like) {
   const BsdfValue value = bsdf.evaluate(frame.to_local(to_viewer), frame.to_local(light.direction), point.inside);
   if (value.value.maxCoeff() <= 0) return;
   const float weight = point_like ? 1.0f : power_heuristic(light.pdf, value.pdf);
@@ -100,7 +111,9 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(++bounces_));
     const ShadingFrame frame(point.shading_normal);
     const Vec3f to_viewer = -ray.direction;
-    origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits()};
+    // What the camera sees directly makes most of the noise: few lights are all sampled there.
+    const bool every_light = bounces_ == 1 && picture_.lights->count() <= kFewLights;
+    origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light};
     if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, to_viewer, numbers);
     if (!scatter(bsdf, point, frame, to_viewer, numbers, ray)) break;
   }

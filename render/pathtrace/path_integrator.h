@@ -54,6 +54,8 @@ class PathIntegrator {
   /// Light sampling at a point.
   void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
                   const SampleBlock& numbers);
+  void add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
+                 const LightSample& light, bool point_like);
   /// Continues the path; false where it ends.
   bool scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
                const SampleBlock& numbers, Ray& ray);
