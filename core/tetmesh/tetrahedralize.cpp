@@ -59,7 +59,7 @@ StuffedMesh fill_surface(const Job& job, double edge, const Vec3& shift = Vec3::
   }();
   const ScopedStage stage(job.times, "tetrahedralize/lattice");
   if (const Index taken_in = bridge_thin_parts(distance, job.surface, job.parts); taken_in > 0)
-    job.log.warn(
+    job.log.info(
         fmt::format("body '{}': what is thinner than the lattice was thickened to about its edge ({:.4g} m) at {} "
                     "nodes, so that it holds together. A smaller edge or more tets follow the surface there.",
                     job.name, edge, taken_in));

@@ -44,7 +44,7 @@ BodySimulation::BodySimulation(const Shot& shot, BodyModel model, const StageKey
       base_key_(simulation_base_key(shot, model_, filled_key)),
       previous_key_(base_key_),
       state_(rest_state()),
-      upcoming_(shot.settings.first_frame - shot.settings.preroll) {}
+      upcoming_(first_simulated_frame()) {}
 
 BodySimulation::~BodySimulation() = default;
 
@@ -74,16 +74,25 @@ Simulator& BodySimulation::simulator() {
 void BodySimulation::require_solved(const StepReport& report, int frame) const {
   if (report.ok()) return;
   const char* what = report.solve.status == SolveStatus::MaxIterations ? "did not converge" : "broke down";
-  throw work_error(fmt::format(
-      "{}: frame {}, body \"{}\": the {} {} after {} iterations (relative residual {:.3g}){}{}.\n"
-      "  Accepted: a step that can be solved. Move the constraint more slowly, raise solver.substeps, or soften what "
-      "is stiff; the frames before are kept.",
-      shot_.path, frame, model_.name, shot_.settings.mode == SimulationMode::Static ? "equilibrium" : "step", what,
-      report.solve.iterations, report.solve.residual, report.culprit.empty() ? "" : "; worst at ", report.culprit));
+  const bool is_static = shot_.settings.mode == SimulationMode::Static || frame == first_simulated_frame();
+  const char* advice = is_static
+                           ? "Accepted: a shape that pins and pulls can hold. Move the constraint in smaller steps, "
+                             "stiffen the material, lower the gravity, or start at rest in a dynamic shot"
+                           : "Accepted: a step that can be solved. Move the constraint more slowly, raise "
+                             "solver.substeps, or soften what is stiff";
+  throw work_error(
+      fmt::format("{}: frame {}, body \"{}\": the {} {} after {} iterations (relative residual {:.3g}){}{}.\n"
+                  "  {}; the frames before are kept.",
+                  shot_.path, frame, model_.name, is_static ? "equilibrium" : "step", what, report.solve.iterations,
+                  report.solve.residual, report.culprit.empty() ? "" : "; worst at ", report.culprit, advice));
+}
+
+int BodySimulation::first_simulated_frame() const {
+  return shot_.settings.first_frame - shot_.settings.preroll;
 }
 
 StageKey BodySimulation::next_key(int frame) const {
-  const int start = shot_.settings.first_frame - shot_.settings.preroll;
+  const int start = first_simulated_frame();
   const bool from_rest = shot_.settings.mode == SimulationMode::Static && shot_.settings.independent;
   return frame_key(shot_, model_, frame == start || from_rest ? base_key_ : previous_key_, frame, frame == start);
 }
@@ -114,7 +123,7 @@ BodyFrame BodySimulation::start_frame() {
 
 BodyFrame BodySimulation::simulated(int frame) {
   const ShotSettings& settings = shot_.settings;
-  const bool is_start = frame == settings.first_frame - settings.preroll;
+  const bool is_start = frame == first_simulated_frame();
   const bool is_static = settings.mode == SimulationMode::Static;
   if (is_start && !is_static && settings.start == StartState::Rest) return start_frame();
   BodyFrame result;

@@ -42,6 +42,7 @@ class BodySimulation {
   SimulationState rest_state() const;
   BodyFrame start_frame();
   BodyFrame simulated(int frame);
+  int first_simulated_frame() const;
   StageKey next_key(int frame) const;
   void require_solved(const StepReport& report, int frame) const;
 
