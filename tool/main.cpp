@@ -5,22 +5,10 @@
 
 #include "core/base/error.h"
 #include "tool/commands/command_line.h"
-#include "tool/commands/session.h"
-
-namespace {
-
-/// The first Ctrl-C asks the stages to stop; a second one ends the program as usual.
-void on_interrupt(int signal) {
-  softreel::cancellation() = true;
-  std::signal(signal, SIG_DFL);
-}
-
-}  // namespace
+#include "tool/commands/interruption.h"
 
 int main(int argc, char** argv) {
-  softreel::cancellation() = false;  // made before a signal can ask for it
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  softreel::watch_for_interruption();
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is said like a full disk
   try {
     return softreel::run_command_line(argc, argv);

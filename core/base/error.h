@@ -33,4 +33,9 @@ inline Error work_error(const std::string& message) {
   return {ErrorKind::Work, message};
 }
 
+/// The user asked to stop; exit status 130.
+inline Error interrupted() {
+  return {ErrorKind::Interrupt, "Interrupted; what is finished is kept. Run the same command again to go on."};
+}
+
 }  // namespace softreel

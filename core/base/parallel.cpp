@@ -10,6 +10,7 @@
 #include <tbb/task_arena.h>
 
 #include "core/base/check.h"
+#include "core/base/error.h"
 
 namespace softreel {
 
@@ -36,25 +37,34 @@ struct Threads::Arena {
   tbb::task_arena arena;
 };
 
-Threads::Threads(int count) : count_(count == 0 ? processors() : count) {
+Threads::Threads(int count, const std::atomic<bool>* stop) : count_(count == 0 ? processors() : count), stop_(stop) {
   CHECK(count >= 0);
   arena_ = std::make_unique<Arena>(count_);
 }
 
 Threads::~Threads() = default;
 
+void Threads::stop_if_asked() const {
+  if (stop_ != nullptr && *stop_) throw interrupted();
+}
+
 void Threads::for_chunks(std::int64_t n, std::int64_t grain, const ChunkBody& body) const {
   CHECK(grain > 0);
   const std::int64_t chunks = (n + grain - 1) / grain;
   if (chunks <= 0) return;
+  stop_if_asked();
   if (count_ == 1 || chunks == 1) {
-    for (std::int64_t k = 0; k < chunks; ++k) body(k * grain, std::min(n, (k + 1) * grain));
+    for (std::int64_t k = 0; k < chunks; ++k) {
+      stop_if_asked();
+      body(k * grain, std::min(n, (k + 1) * grain));
+    }
     return;
   }
   std::vector<std::exception_ptr> failures(static_cast<std::size_t>(chunks));
   arena_->arena.execute([&] {
     tbb::parallel_for(std::int64_t{0}, chunks, [&](std::int64_t k) {
       try {
+        stop_if_asked();
         body(k * grain, std::min(n, (k + 1) * grain));
       } catch (...) {
         failures[static_cast<std::size_t>(k)] = std::current_exception();

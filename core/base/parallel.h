@@ -4,6 +4,7 @@
 /// partial result per chunk, in the order of the chunks.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -16,8 +17,9 @@ class Threads {
   using ChunkBody = std::function<void(std::int64_t begin, std::int64_t end)>;
   using ChunkSum = std::function<double(std::int64_t begin, std::int64_t end)>;
 
-  /// count: number of threads, at least 1; 0 takes all processors of the machine.
-  explicit Threads(int count = 0);
+  /// count: number of threads, at least 1; 0 takes all processors of the machine. stop: once it is set, loops that are
+  /// begun or under way end with an Error of kind Interrupt, so that whatever works through them can be stopped.
+  explicit Threads(int count = 0, const std::atomic<bool>* stop = nullptr);
   ~Threads();
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;
@@ -36,7 +38,10 @@ class Threads {
 
  private:
   struct Arena;
+  void stop_if_asked() const;
+
   int count_;
+  const std::atomic<bool>* stop_;
   std::unique_ptr<Arena> arena_;
 };
 

@@ -60,7 +60,7 @@ int run_batch(const BatchOptions& options) {
     }
     console.info(fmt::format("shot {} of {}: {}", outcomes.size() + 1, options.shots.size(), shot));
     const auto start = std::chrono::steady_clock::now();
-    const int status = run_process(child_command(options, shot), "");
+    const int status = run_process(child_command(options, shot), nullptr);
     outcomes.push_back({shot, status, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
     if (status == 130 || cancellation()) throw Error(ErrorKind::Interrupt, "Interrupted; finished frames are kept.");
     failed += status == 0 ? 0 : 1;

@@ -13,23 +13,22 @@ int run_check(const ShotOptions& options) {
   silent.quiet = true;
   Session session(silent);
   ShotRun run(session.shot(), session.context());
-  const SceneStage scenes(run);
-  RunReport report = session.report("check", run, false);
+  SceneStage scenes(run);
+  scenes.load_environment();
+  RunReport report = session.report("check", run);
   if (options.json) {
     std::printf("%s\n", to_json(report).c_str());
     return 0;
   }
   for (std::size_t b = 0; b < run.body_count(); ++b) {
-    std::vector<Pin> pins;
-    std::vector<Pull> pulls;
-    resolve_constraints(run.settings(b), run.loaded(b).surface, pins, pulls);
+    const BodyConstraints constraints = resolve_constraints(run.settings(b), run.loaded(b).surface);
     const Vec3 size = used_bounds(run.loaded(b).surface).size();
     std::printf("%s: %s: %lld vertices, %lld triangles, %.4g x %.4g x %.4g m\n", report.bodies[b].name.c_str(),
                 report.bodies[b].mesh.c_str(), static_cast<long long>(report.bodies[b].vertices),
                 static_cast<long long>(report.bodies[b].triangles), size.x(), size.y(), size.z());
     for (const std::string& fact : report.bodies[b].facts) std::printf("  %s\n", fact.c_str());
-    for (const Pin& pin : pins) std::printf("  %s: %zu points\n", pin.name.c_str(), pin.points.size());
-    for (const Pull& pull : pulls) std::printf("  %s: %zu points\n", pull.name.c_str(), pull.points.size());
+    for (const Pin& pin : constraints.pins) std::printf("  %s: %zu points\n", pin.name.c_str(), pin.points.size());
+    for (const Pull& pull : constraints.pulls) std::printf("  %s: %zu points\n", pull.name.c_str(), pull.points.size());
   }
   std::printf("%s: sound.\n", session.shot().path.c_str());
   return 0;

@@ -19,25 +19,32 @@ constexpr const char* kFooter =
     "Exit status: 0 done; 1 the work failed; 2 the input is wrong or a part is not built in; 130 after Ctrl-C.\n"
     "Fields of shots: softreel fields [PATH]. Examples: the shots in presets/.";
 
-void add_run_options(CLI::App& command, ShotOptions& options) {
+/// Where results lie, and with which fields.
+void add_place_options(CLI::App& command, ShotOptions& options) {
   command.add_option("--set", options.sets, "set a field of the shot, e.g. body.mesh=my.obj (repeatable)")
       ->option_text("PATH=VALUE")
       ->expected(1)
       ->take_all()
-      ->group("Shot");
-  command.add_option("--frames", options.frames, "frames to make: FIRST-LAST or one [all of the shot]")
-      ->option_text("RANGE")
       ->group("Shot");
   command.add_option("--output", options.output, "output folder [output.directory of the shot]")
       ->option_text("DIR")
       ->group("Files");
   command.add_option("--cache", options.cache, "folder of stored results [.cache in the output folder]")
       ->option_text("DIR")
-
       ->group("Files");
+  command.add_option("--cache-limit", options.cache_limit_gb, "size of the cache, 0: no limit [output.cache_limit]")
+      ->option_text("GB")
+      ->check(CLI::NonNegativeNumber)
+      ->group("Files");
+}
+
+void add_run_options(CLI::App& command, ShotOptions& options) {
+  add_place_options(command, options);
+  command.add_option("--frames", options.frames, "frames to make: FIRST-LAST or one [all of the shot]")
+      ->option_text("RANGE")
+      ->group("Shot");
   command.add_option("--threads", options.threads, "number of threads, 1 to 1024 [all processors]")
       ->option_text("N")
-
       ->check(CLI::Range(1, 1024))
       ->group("Running");
   command.add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Running");
@@ -57,6 +64,8 @@ struct Parsed {
   ExportOptions exporting;
   GoldenOptions golden;
   BatchOptions batch;
+  StatusOptions status;
+  CleanOptions clean;
   InspectOptions inspect;
   TetrahedralizeOptions tetrahedralize;
   std::string field;
@@ -100,6 +109,20 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   CLI::App* check = app.add_subcommand("check", "read a shot, its meshes and selections, and say what they hold");
   add_shot_options(*check, parsed.shot);
   check->callback([&] { run = [&parsed] { return run_check(parsed.shot); }; });
+
+  CLI::App* status = app.add_subcommand("status", "say what of a shot is done, stale and why, missing or damaged");
+  status->add_option("shot", parsed.status.shot.shot, "shot file (TOML)")->required()->option_text("SHOT");
+  add_place_options(*status, parsed.status.shot);
+  status->add_flag("--json", parsed.status.shot.json, "as JSON")->group("Running");
+  status->add_flag("--exit-code", parsed.status.exit_code, "status 1 unless everything is done")->group("Running");
+  status->callback([&] { run = [&parsed] { return run_status(parsed.status); }; });
+
+  CLI::App* clean = app.add_subcommand("clean", "remove stored results that the shot as it is now does not need");
+  clean->add_option("shot", parsed.clean.shot.shot, "shot file (TOML)")->option_text("SHOT");
+  add_place_options(*clean, parsed.clean.shot);
+  clean->add_flag("--all", parsed.clean.all, "remove everything that no running job needs")->group("Running");
+  clean->add_flag("--dry-run", parsed.clean.shot.dry_run, "only say what would be removed")->group("Running");
+  clean->callback([&] { run = [&parsed] { return run_clean(parsed.clean); }; });
 
   CLI::App* inspect = app.add_subcommand("inspect", "say what is in a surface mesh: size, holes, flips, pieces");
   inspect->add_option("mesh", parsed.inspect.mesh, "surface mesh in any format assimp reads")->required();

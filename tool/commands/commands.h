@@ -49,6 +49,22 @@ int run_batch(const BatchOptions& options);
 /// Reads a shot, its meshes and selections, and says what they hold.
 int run_check(const ShotOptions& options);
 
+struct StatusOptions {
+  ShotOptions shot;
+  bool exit_code = false;  ///< status 1 unless everything is done
+};
+
+/// Says what of a shot is done, stale and why, missing or damaged.
+int run_status(const StatusOptions& options);
+
+struct CleanOptions {
+  ShotOptions shot;  ///< its `shot` may be empty
+  bool all = false;
+};
+
+/// Removes stored results that nothing needs any more.
+int run_clean(const CleanOptions& options);
+
 struct InspectOptions {
   std::string mesh;
   bool json = false;

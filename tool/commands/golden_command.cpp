@@ -60,15 +60,14 @@ int run_golden(const GoldenOptions& options) {
   const fs::path folder =
       options.reference.empty() ? fs::path(shot.path).parent_path() / "golden" : fs::path(options.reference);
   ShotRun run(shot, session.context());
-  const SceneStage scenes(run);
+  SceneStage scenes(run);
   PathTracer tracer(session.context().threads, session.context().times);
   const std::set<int> frames = golden_frames(shot);
   int done = 0, changed = 0;
   RunReport made;
   session.console().begin("golden frames", static_cast<int>(frames.size()));
   for (const int frame : frames) {
-    run.advance_to(frame);
-    const Scene scene = scenes.at(frame, run.skin(skin_request(shot.render)));
+    const Scene scene = scenes.at(frame, run.skin(frame, skin_request(shot.render)));
     const Image image = tracer.render(scene, shot.render.params, [] { return cancellation().load(); });
     const DisplayImage picture = to_display(image, shot.output.view, static_cast<float>(shot.output.exposure));
     const std::string path = (folder / fmt::format("{}.{:04}.png", shot.settings.name, frame)).string();
@@ -82,8 +81,8 @@ int run_golden(const GoldenOptions& options) {
     }
     session.console().advance(++done, fmt::format("frame {}", frame));
   }
-  RunReport report = session.report("golden", run, true);
-  report.pictures_traced = done;
+  RunReport report = session.report("golden", run);
+  report.pictures.traced = done;
   report.made = made.made;
   session.finish(report);
   if (changed > 0) throw work_error(fmt::format("{} of {} golden images changed.", changed, done));

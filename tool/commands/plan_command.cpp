@@ -5,6 +5,7 @@
 #include "tool/commands/commands.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
+#include "tool/stages/stage_names.h"
 
 namespace softreel {
 namespace {
@@ -40,7 +41,7 @@ Plan make_plan(const ShotRun& run, const FrameSpan& frames, int threads) {
     const double tets = expected_tets(shot.bodies[b], used_bounds(loaded.surface).size());
     plan.tets += tets;
     plan.triangles += static_cast<double>(loaded.surface.triangles.size());
-    if (!run.context().cache.has("tetrahedra", filled_key(shot.bodies[b], loaded)))
+    if (!run.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key()))
       plan.fill_seconds += tets * kFillSecondsPerTet / speed;
   }
   const int simulated = frames.last - shot.settings.first_frame + 1 + shot.settings.preroll;
@@ -65,7 +66,7 @@ int run_plan(const ShotOptions& options) {
   const Plan plan = make_plan(run, frames, session.context().threads.count());
   std::printf("%s: would do (nothing is written):\n", shot.settings.name.c_str());
   for (std::size_t b = 0; b < run.body_count(); ++b) {
-    const bool cached = session.context().cache.has("tetrahedra", filled_key(shot.bodies[b], run.loaded(b)));
+    const bool cached = session.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key());
     std::printf("  fill %s: %zu triangles, about %.0f tetrahedra%s\n", shot.bodies[b].name.c_str(),
                 run.loaded(b).surface.triangles.size(),
                 expected_tets(shot.bodies[b], used_bounds(run.loaded(b).surface).size()),

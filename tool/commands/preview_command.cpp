@@ -1,3 +1,6 @@
+#include <chrono>
+#include <memory>
+
 #include <fmt/format.h>
 
 #include "render/preview/preview.h"
@@ -5,35 +8,61 @@
 #include "tool/stages/outputs.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
+#include "tool/stages/simulate_key.h"
 
 namespace softreel {
+
+namespace {
+
+constexpr SkinRequest kNoBlur{true, 0, 1};
+
+StageKey preview_key(const Shot& shot, const StageKey& look) {
+  return KeyHasher("preview 2").add(look).add(shot.output.view).add(shot.output.exposure).key();
+}
+
+}  // namespace
 
 int run_preview(const ShotOptions& options) {
   if (options.dry_run) return run_plan(options);
   Session session(options);
   const Shot& shot = session.shot();
   const FrameSpan frames = session.frames();
-  const std::unique_ptr<Preview> preview = make_egl_preview();
-  session.console().info("preview on " + preview->description());
   Outputs outputs(shot.output.directory, shot.settings.name + ".preview", session.context().log);
   ShotRun run(shot, session.context());
-  const SceneStage scenes(run);
-  const auto exposure = static_cast<float>(shot.output.exposure);
+  session.prepare(outputs);
+  session.claim(run.items(first_simulated_frame(shot), frames.last));
+  SceneStage scenes(run);
+  std::unique_ptr<Preview> preview;  // made when the first frame has to be drawn
+  int written = 0;
+  double saved = 0;
   session.console().begin("frames", frames.count());
   for (int frame = frames.first; frame <= frames.last; ++frame) {
-    run.advance_to(frame);
-    const Scene scene = scenes.at(frame, run.skin({true, 0, 1}));
-    DisplayImage picture;
-    {
-      const ScopedStage stage(session.context().times, "preview");
-      picture = preview->draw(scene, shot.render.params.width, shot.render.params.height, shot.output.view, exposure);
+    session.context().stop_if_cancelled();
+    const std::string path = outputs.frame_path(frame, "png");
+    const StageKey key = preview_key(shot, scenes.trace_key(frame));
+    if (outputs.is_done(path, key)) {
+      saved += outputs.entry(path)->seconds;
+      session.console().advance(frame - frames.first + 1, fmt::format("frame {} there already", frame));
+      continue;
     }
-    const StageKey key =
-        KeyHasher("preview 1").add(picture_key(scene, shot.render.params)).add(shot.output.view).add(exposure).key();
-    outputs.write(outputs.frame_path(frame, "png"), key, encode_png(picture));
+    if (!preview) {
+      preview = make_egl_preview();
+      session.console().info("preview on " + preview->description());
+    }
+    const Scene scene = scenes.at(frame, run.skin(frame, kNoBlur));
+    const auto start = std::chrono::steady_clock::now();
+    const ScopedStage stage(session.context().times, "preview");
+    const DisplayImage picture = preview->draw(scene, shot.render.params.width, shot.render.params.height,
+                                               shot.output.view, static_cast<float>(shot.output.exposure));
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    outputs.write(path, key, encode_png(picture), seconds.count());
+    ++written;
     session.console().advance(frame - frames.first + 1, fmt::format("frame {}", frame));
   }
-  RunReport report = session.report("preview", run, true);
+  RunReport report = session.report("preview", run);
+  report.files_written = written;
+  report.files_kept = frames.count() - written;
+  report.files_saved_seconds = saved;
   report.made.push_back(outputs.frame_path(frames.first, "png") + " .. " + outputs.frame_path(frames.last, "png"));
   session.finish(report);
   return 0;

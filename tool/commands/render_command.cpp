@@ -1,30 +1,42 @@
 #include <fmt/format.h>
 
 #include "tool/commands/commands.h"
+#include "tool/stages/frame_pipeline.h"
 #include "tool/stages/movie_stage.h"
-#include "tool/stages/outputs.h"
-#include "tool/stages/picture_stage.h"
-#include "tool/stages/scene_stage.h"
-#include "tool/stages/shot_run.h"
+#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 namespace {
 
-void count(RunReport& report, PictureSource source) {
-  if (source == PictureSource::Traced) ++report.pictures_traced;
-  if (source == PictureSource::Linked) ++report.pictures_linked;
-  if (source == PictureSource::Done) ++report.pictures_kept;
-}
-
 const char* note_of(PictureSource source) {
-  if (source == PictureSource::Traced) return "traced";
-  return source == PictureSource::Linked ? "copied" : "there already";
+  switch (source) {
+    case PictureSource::Kept:
+      return "there already";
+    case PictureSource::Recalled:
+      return "from the cache";
+    case PictureSource::Developed:
+      return "developed again";
+    case PictureSource::Linked:
+      return "equal to another";
+    case PictureSource::Traced:
+      return "traced";
+  }
+  return "";
 }
 
 std::string made_line(const Outputs& outputs, const FrameSpan& frames, const std::string& extension) {
   return frames.count() == 1
              ? outputs.frame_path(frames.first, extension)
              : outputs.frame_path(frames.first, extension) + " .. " + outputs.frame_path(frames.last, extension);
+}
+
+/// Nothing of an older shot stays under a name of this one: a killed run leaves no mixture.
+void remove_outdated(const Session& session, PictureStage& pictures, Outputs& outputs) {
+  const int removed = pictures.remove_outdated(session.frames().first, session.frames().last);
+  if (removed > 0) session.context().log.info(fmt::format("{} outdated pictures removed", removed));
+  const ShotSettings& settings = session.shot().settings;
+  if (is_movie_outdated(session.shot(), settings.first_frame, settings.last_frame, outputs))
+    outputs.remove({outputs.path("mp4")});
 }
 
 }  // namespace
@@ -34,28 +46,31 @@ int run_render(const ShotOptions& options) {
   Session session(options);
   const Shot& shot = session.shot();
   const FrameSpan frames = session.frames();
-  Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
-  ShotRun run(shot, session.context());
-  const SceneStage scenes(run);
-  PictureStage pictures(shot, outputs, session.context());
-  RunReport counts;
+  ShotRun run(shot, session.context_beside());
+  Outputs outputs(session.shot().output.directory, session.shot().settings.name, session.context().log);
+  session.prepare(outputs);
+  SceneStage scenes(run);
+  PictureStage pictures(scenes, shot, outputs, session.context());
+  session.claim(run.items(first_simulated_frame(shot), frames.last));
+  CacheUse& use = session.claim(pictures.items(frames.first, frames.last));
+  remove_outdated(session, pictures, outputs);
+  outputs.note_simulation();
   session.console().begin("frames", frames.count());
-  for (int frame = frames.first; frame <= frames.last; ++frame) {
-    run.advance_to(frame);
-    const PictureSource source = pictures.make(frame, scenes.at(frame, run.skin(skin_request(shot.render))));
-    count(counts, source);
-    session.console().advance(frame - frames.first + 1, fmt::format("frame {} {}", frame, note_of(source)));
-  }
-  if (shot.output.png) counts.made.push_back(made_line(outputs, frames, "png"));
-  if (shot.output.exr) counts.made.push_back(made_line(outputs, frames, "exr"));
+  int done = 0;
+  const PictureCounts counts =
+      make_pictures(run, scenes, pictures, frames.first, frames.last, use, [&](int frame, PictureSource source) {
+        session.console().advance(++done, fmt::format("frame {} {}", frame, note_of(source)));
+        session.keep_within_limit();
+      });
+  std::vector<std::string> made;
+  if (shot.output.png) made.push_back(made_line(outputs, frames, "png"));
+  if (shot.output.exr) made.push_back(made_line(outputs, frames, "exr"));
   const bool whole = frames.first == shot.settings.first_frame && frames.last == shot.settings.last_frame;
   if (shot.output.movie && shot.output.png && whole && frames.count() > 1)
-    counts.made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
-  RunReport report = session.report("render", run, true);
-  report.pictures_traced = counts.pictures_traced;
-  report.pictures_linked = counts.pictures_linked;
-  report.pictures_kept = counts.pictures_kept;
-  report.made = counts.made;
+    made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
+  RunReport report = session.report("render", run);
+  report.pictures = counts;
+  report.made = made;
   session.finish(report);
   return 0;
 }

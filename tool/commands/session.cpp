@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "tool/shot/shot_load.h"
 #include "tool/stages/atomic_file.h"
+#include "tool/stages/settings_snapshot.h"
 
 namespace softreel {
 namespace {
@@ -50,25 +51,43 @@ Shot load_shot_for(const ShotOptions& options) {
   return shot;
 }
 
-std::atomic<bool>& cancellation() {
-  static std::atomic<bool> cancelled{false};
-  return cancelled;
-}
-
-Session::Session(const ShotOptions& options)
+Session::Session(const ShotOptions& options, Cache::Storing storing)
     : options_(options),
       shot_(load_shot_for(options)),
       frames_(parse_frames(options.frames, shot_)),
       console_(options.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0),
       log_(console_.log()),
-      threads_(shot_.threads),
+      threads_(shot_.threads, &cancellation()),
+      threads_beside_(shot_.threads, &cancellation()),
       cache_(
           options.cache.empty() ? (std::filesystem::path(shot_.output.directory) / ".cache").string() : options.cache,
-          log_),
+          storing, log_),
       context_{threads_, log_, times_, cache_, cancellation()},
-      start_(std::chrono::steady_clock::now()) {}
+      context_beside_{threads_beside_, log_, times_, cache_, cancellation()},
+      start_(std::chrono::steady_clock::now()) {
+  if (options.cache_limit_gb >= 0) shot_.output.cache_limit_gb = options.cache_limit_gb;
+}
 
-RunReport Session::report(const std::string& command, const ShotRun& run, bool filled) const {
+void Session::prepare(Outputs& outputs) const {
+  require_writable(outputs.folder());
+  sweep_temporaries(outputs.folder());
+  outputs.set_settings(snapshot(shot_));
+}
+
+CacheUse& Session::claim(const std::vector<CacheItem>& items) {
+  if (!use_) use_.emplace(cache_, shot_.path, shot_.output.directory);
+  use_->claim(items);
+  return *use_;
+}
+
+void Session::keep_within_limit() {
+  const double limit = shot_.output.cache_limit_gb * 1e9;
+  if (limit == 0 || static_cast<double>(cache_.stored_bytes() - stored_at_last_cut_) < limit / 16) return;
+  stored_at_last_cut_ = cache_.stored_bytes();
+  cut_cache(cache_, limit);
+}
+
+RunReport Session::report(const std::string& command, const ShotRun& run) const {
   RunReport report;
   report.command = command;
   report.shot = shot_.path;
@@ -76,7 +95,7 @@ RunReport Session::report(const std::string& command, const ShotRun& run, bool f
   report.last_frame = frames_.last;
   report.threads = threads_.count();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  report.bodies = report_bodies(run, filled);
+  report.bodies = report_bodies(run);
   report.simulation = run.counts();
   report.stages = times_.entries();
   return report;
@@ -84,6 +103,9 @@ RunReport Session::report(const std::string& command, const ShotRun& run, bool f
 
 void Session::finish(const RunReport& report) {
   console_.end();
+  use_.reset();
+  if (shot_.output.cache_limit_gb > 0 && cache_.stored_bytes() > 0)
+    cut_cache(cache_, shot_.output.cache_limit_gb * 1e9);
   const std::filesystem::path folder(shot_.output.directory);
   write_file((folder / (shot_.settings.name + ".resolved.toml")).string(), to_toml(shot_));
   write_file((folder / (shot_.settings.name + ".report.json")).string(), to_json(report) + "\n");

@@ -3,12 +3,16 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tool/commands/interruption.h"
 #include "tool/report/console.h"
 #include "tool/report/run_report.h"
 #include "tool/shot/shot.h"
+#include "tool/stages/cache_use.h"
+#include "tool/stages/outputs.h"
 #include "tool/stages/run_context.h"
 
 namespace softreel {
@@ -19,6 +23,7 @@ struct ShotOptions {
   std::string frames;             ///< "10-20" or "10"; empty: all of the shot
   std::string output;             ///< folder; empty: the shot's
   std::string cache;              ///< folder; empty: OUTPUT/.cache
+  double cache_limit_gb = -1;     ///< below 0: the shot's
   int threads = 0;                ///< 0: the shot's
   bool quiet = false, json = false, dry_run = false;
 };
@@ -34,13 +39,10 @@ FrameSpan parse_frames(const std::string& text, const Shot& shot);
 /// Reads the shot with its overrides and the options that stand for fields of it.
 Shot load_shot_for(const ShotOptions& options);
 
-/// Set by Ctrl-C; stages ask for it between steps.
-std::atomic<bool>& cancellation();
-
 /// One command's run over one shot. Members are made in order and refer to each other, so a session stays in place.
 class Session {
  public:
-  explicit Session(const ShotOptions& options);
+  explicit Session(const ShotOptions& options, Cache::Storing storing = Cache::Storing::Wanted);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -48,9 +50,19 @@ class Session {
   const FrameSpan& frames() const { return frames_; }
   Console& console() { return console_; }
   const RunContext& context() const { return context_; }
+  /// The same with threads of their own, for work beside that of `context`.
+  const RunContext& context_beside() const { return context_beside_; }
+
+  /// Before files are made: throws work_error if the folder cannot be written, removes what killed runs left there, and
+  /// tells the manifest the settings that its files are made with.
+  void prepare(Outputs& outputs) const;
+  /// Tells the cache what this run needs, for as long as the session lives.
+  CacheUse& claim(const std::vector<CacheItem>& items);
+  /// Cuts the cache to its limit if it has grown by much since the last time.
+  void keep_within_limit();
 
   /// Fills in what every report has; the caller adds counts and files.
-  RunReport report(const std::string& command, const ShotRun& run, bool filled) const;
+  RunReport report(const std::string& command, const ShotRun& run) const;
   /// Prints the report (JSON on standard output if asked for), and writes it and the resolved shot beside the output.
   void finish(const RunReport& report);
 
@@ -60,10 +72,12 @@ class Session {
   FrameSpan frames_;
   Console console_;
   Log log_;
-  Threads threads_;
+  Threads threads_, threads_beside_;
   StageTimes times_;
   Cache cache_;
-  RunContext context_;
+  RunContext context_, context_beside_;
+  std::optional<CacheUse> use_;
+  std::int64_t stored_at_last_cut_ = 0;
   std::chrono::steady_clock::time_point start_;
 };
 

@@ -2,20 +2,26 @@
 
 #include "tool/commands/commands.h"
 #include "tool/stages/shot_run.h"
+#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 
 int run_simulate(const ShotOptions& options) {
   if (options.dry_run) return run_plan(options);
-  Session session(options);
+  Session session(options, Cache::Storing::Required);
   const FrameSpan frames = session.frames();
   ShotRun run(session.shot(), session.context());
+  Outputs outputs(session.shot().output.directory, session.shot().settings.name, session.context().log);
+  session.prepare(outputs);
+  session.claim(run.items(first_simulated_frame(session.shot()), frames.last));
+  outputs.note_simulation();
   session.console().begin("frames", frames.count());
   for (int frame = frames.first; frame <= frames.last; ++frame) {
-    run.advance_to(frame);
+    run.simulate(frame);
     session.console().advance(frame - frames.first + 1, fmt::format("frame {}", frame));
+    session.keep_within_limit();
   }
-  RunReport report = session.report("simulate", run, true);
+  RunReport report = session.report("simulate", run);
   report.made.push_back(session.context().cache.folder() + ": simulated frames");
   session.finish(report);
   return 0;

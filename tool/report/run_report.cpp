@@ -1,13 +1,15 @@
 #include "tool/report/run_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "tool/report/console.h"
+#include "tool/stages/stage_names.h"
 
 namespace softreel {
 
-std::vector<BodyReport> report_bodies(const ShotRun& run, bool filled) {
+std::vector<BodyReport> report_bodies(const ShotRun& run) {
   std::vector<BodyReport> reports;
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     BodyReport report;
@@ -17,11 +19,15 @@ std::vector<BodyReport> report_bodies(const ShotRun& run, bool filled) {
     report.vertices = static_cast<std::int64_t>(loaded.surface.positions.size());
     report.triangles = static_cast<std::int64_t>(loaded.surface.triangles.size());
     report.facts = loaded.facts;
-    if (filled) {
-      report.nodes = static_cast<std::int64_t>(run.filled(b).mesh.nodes.size());
-      report.tets = static_cast<std::int64_t>(run.filled(b).mesh.tets.size());
-      report.tets_from_cache = run.filled(b).from_cache;
-      report.levels = run.levels(b);
+    report.levels = run.simulation(b).levels();
+    if (const FilledBody* filled = run.filled(b)) {
+      report.nodes = static_cast<std::int64_t>(filled->mesh.nodes.size());
+      report.tets = static_cast<std::int64_t>(filled->mesh.tets.size());
+      report.tets_from_cache = filled->from_cache;
+      report.tets_seconds = filled->seconds;
+    } else if (const auto seconds = run.context().cache.seconds(kTetrahedraStage, run.simulation(b).filled_key())) {
+      report.tets_from_cache = true;
+      report.tets_seconds = *seconds;
     }
     reports.push_back(std::move(report));
   }
@@ -56,17 +62,46 @@ std::map<std::string, StageTimes::Entry> with_parents(const std::map<std::string
 
 std::string simulation_line(const RunReport& report) {
   const SimulationCounts& counts = report.simulation;
-  if (counts.frames == 0) return {};
-  const int simulated = counts.frames - counts.frames_from_cache;
-  std::string line = fmt::format("  simulation: {} body frames computed, {} taken from the cache", simulated,
-                                 counts.frames_from_cache);
-  if (simulated > 0)
-    line +=
-        fmt::format("; {:.1f} solver iterations a frame", static_cast<double>(counts.linear_iterations) / simulated);
-  return line + "\n";
+  if (counts.computed == 0) return {};
+  return fmt::format("  simulation: {} body frames computed; {:.1f} solver iterations a frame\n", counts.computed,
+                     static_cast<double>(counts.linear_iterations) / counts.computed);
+}
+
+std::string picture_line(const PictureCounts& counts) {
+  std::string line;
+  const auto add = [&](int number, const char* what) {
+    if (number > 0) line += fmt::format("{}{} {}", line.empty() ? "  pictures: " : ", ", number, what);
+  };
+  add(counts.traced, "traced");
+  add(counts.linked, "equal to another and linked");
+  add(counts.developed, "developed again for another view or exposure");
+  add(counts.recalled, "taken from the cache");
+  add(counts.kept, "there already");
+  return line.empty() ? line : line + "\n";
 }
 
 }  // namespace
+
+std::vector<std::string> skipped_lines(const RunReport& report) {
+  std::vector<std::string> lines;
+  const auto add = [&](int number, const char* what, double seconds) {
+    if (number > 0) lines.push_back(fmt::format("{} {} ({})", number, what, format_duration(seconds)));
+  };
+  int filled = 0;
+  double fill_seconds = 0;
+  for (const BodyReport& body : report.bodies) {
+    filled += body.tets_from_cache ? 1 : 0;
+    fill_seconds += body.tets_from_cache ? body.tets_seconds : 0;
+  }
+  add(filled, filled == 1 ? "tetrahedralisation" : "tetrahedralisations", fill_seconds);
+  add(report.simulation.loaded + report.simulation.not_needed, "simulated body frames",
+      report.simulation.saved_seconds);
+  const PictureCounts& pictures = report.pictures;
+  add(pictures.kept + pictures.recalled + pictures.developed + pictures.linked, "traced pictures",
+      pictures.saved_seconds);
+  add(report.files_kept, "written files", report.files_saved_seconds);
+  return lines;
+}
 
 std::string to_text(const RunReport& report) {
   std::string text;
@@ -78,10 +113,13 @@ std::string to_text(const RunReport& report) {
     text += "\n";
   }
   text += simulation_line(report);
-  if (report.pictures_traced + report.pictures_linked + report.pictures_kept > 0)
-    text += fmt::format("  pictures: {} traced, {} equal to another and copied, {} there already\n",
-                        report.pictures_traced, report.pictures_linked, report.pictures_kept);
-  text += fmt::format("  time: {} on {} threads, of which\n{}", format_duration(report.seconds), report.threads,
+  text += picture_line(report.pictures);
+  if (report.files_written + report.files_kept > 0)
+    text += fmt::format("  files: {} written, {} there already\n", report.files_written, report.files_kept);
+  const std::vector<std::string> skipped = skipped_lines(report);
+  if (!skipped.empty()) text += fmt::format("  skipped, with the time they once took: {}\n", fmt::join(skipped, ", "));
+  text += fmt::format("  time: {} on {} threads; stages that ran side by side are counted each\n{}",
+                      format_duration(report.seconds), report.threads,
                       stage_table(with_parents(report.stages), report.seconds));
   for (const std::string& made : report.made) text += "  made: " + made + "\n";
   return text;
@@ -106,15 +144,24 @@ std::string to_json(const RunReport& report) {
                               {"nodes", body.nodes},
                               {"tets", body.tets},
                               {"tets_from_cache", body.tets_from_cache},
+                              {"tets_seconds", body.tets_seconds},
                               {"facts", body.facts},
                               {"levels", levels}});
   }
-  json["simulation"] = {{"frames", report.simulation.frames},
-                        {"frames_from_cache", report.simulation.frames_from_cache},
-                        {"linear_iterations", report.simulation.linear_iterations},
-                        {"nonlinear_iterations", report.simulation.nonlinear_iterations}};
-  json["pictures"] = {
-      {"traced", report.pictures_traced}, {"copied", report.pictures_linked}, {"kept", report.pictures_kept}};
+  const SimulationCounts& simulation = report.simulation;
+  json["simulation"] = {{"computed", simulation.computed},
+                        {"loaded", simulation.loaded},
+                        {"not_needed", simulation.not_needed},
+                        {"linear_iterations", simulation.linear_iterations},
+                        {"nonlinear_iterations", simulation.nonlinear_iterations},
+                        {"saved_seconds", simulation.saved_seconds}};
+  const PictureCounts& pictures = report.pictures;
+  json["pictures"] = {{"traced", pictures.traced},       {"linked", pictures.linked},
+                      {"developed", pictures.developed}, {"recalled", pictures.recalled},
+                      {"kept", pictures.kept},           {"saved_seconds", pictures.saved_seconds}};
+  json["files"] = {
+      {"written", report.files_written}, {"kept", report.files_kept}, {"saved_seconds", report.files_saved_seconds}};
+  json["skipped"] = skipped_lines(report);
   json["made"] = report.made;
   for (const auto& [name, entry] : report.stages)
     json["stages"][name] = {{"seconds", entry.seconds}, {"calls", entry.calls}};

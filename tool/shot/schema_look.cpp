@@ -233,7 +233,9 @@ const Table<OutputSettings>& output_table() {
         .add("exposure", &O::exposure, number({-64, 64, false}), "stops", "Each stop doubles the brightness.")
         .add("png", &O::png, toggle(), "", "Writes a PNG of each frame.")
         .add("exr", &O::exr, toggle(), "", "Writes a scene-linear EXR of each frame.")
-        .add("movie", &O::movie, toggle(), "", "Joins the frames to a movie, where ffmpeg is installed.");
+        .add("movie", &O::movie, toggle(), "", "Joins the frames to a movie, where ffmpeg is installed.")
+        .add("cache_limit", &O::cache_limit_gb, number({0, 1e9, false}), "GB",
+             "Stored results beyond it are removed, those used longest ago first; 0: no limit.");
     return t;
   }();
   return table;

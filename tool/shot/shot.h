@@ -140,6 +140,7 @@ struct OutputSettings {
   ViewTransform view = ViewTransform::Filmic;
   double exposure = 0;  ///< stops
   bool png = true, exr = false, movie = true;
+  double cache_limit_gb = 20;  ///< of stored results; 0: no limit
 };
 
 struct GoldenSettings {

@@ -25,7 +25,10 @@ std::string joined(const std::vector<std::string>& problems) {
 }  // namespace
 
 Shot load_shot(const std::string& path, const std::vector<Override>& overrides) {
-  const TomlValue document = load_layers(path, overrides);
+  return parse_shot(path, load_layers(path, overrides));
+}
+
+Shot parse_shot(const std::string& path, const TomlValue& document) {
   Shot shot;
   shot.path = path;
   shot.settings.name = std::filesystem::path(path).stem().string();

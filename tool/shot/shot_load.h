@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tool/shot/shot.h"
+#include "tool/shot/toml_tree.h"
 
 namespace softreel {
 
@@ -21,6 +22,12 @@ Override parse_override(const std::string& text);
 /// relative to it, paths in overrides to the working directory. Throws input_error with file, line and column, the
 /// value, what is accepted, and the nearest known name for unknown ones.
 Shot load_shot(const std::string& path, const std::vector<Override>& overrides);
+
+/// The shot of a whole document, with presets and overrides in it; `path` names it in messages. Throws input_error.
+Shot parse_shot(const std::string& path, const TomlValue& document);
+
+/// The shot as a document with every field written out: parsing it gives the same shot.
+TomlValue to_tree(const Shot& shot);
 
 /// The shot as TOML with every field written out: loading it gives the same shot.
 std::string to_toml(const Shot& shot);

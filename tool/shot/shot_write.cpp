@@ -5,8 +5,12 @@
 
 namespace softreel {
 
+TomlValue to_tree(const Shot& shot) {
+  return write_table(shot_table(), shot);
+}
+
 std::string to_toml(const Shot& shot) {
-  return to_document(write_table(shot_table(), shot));
+  return to_document(to_tree(shot));
 }
 
 }  // namespace softreel

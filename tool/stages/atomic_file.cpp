@@ -1,5 +1,6 @@
 #include "tool/stages/atomic_file.h"
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -7,14 +8,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "tool/stages/file_lock.h"
 
 namespace softreel {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::string_view kTemporaryEnding = ".part";
 
 std::string advice(int code) {
   if (code == ENOSPC || code == EDQUOT) return "Free some space or choose another folder with --output.";
@@ -23,25 +28,39 @@ std::string advice(int code) {
   return "Check the path, or choose another folder with --output.";
 }
 
-/// A name in the same folder that no other process uses and that no pattern of the outputs matches.
+/// A name in the same folder that nobody else uses and that no pattern of the outputs matches.
 std::string temporary_name(const std::string& path) {
+  static std::atomic<int> counter{0};
+  char host[256] = "host";
+  ::gethostname(host, sizeof host - 1);
   const fs::path p(path);
-  return (p.parent_path() / fmt::format(".{}.{}.part", p.filename().string(), ::getpid())).string();
+  const std::string name =
+      fmt::format(".{}.{}.{}.{}{}", p.filename().string(), host, ::getpid(), ++counter, kTemporaryEnding);
+  return (p.parent_path() / name).string();
+}
+
+fs::path folder_of(const std::string& path) {
+  const fs::path parent = fs::path(path).parent_path();
+  return parent.empty() ? fs::path(".") : parent;
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), temporary_(temporary_name(path_)) {
-  const fs::path parent = fs::path(path_).parent_path();
-  if (!parent.empty()) make_folder(parent.string());
-  file_ = std::fopen(temporary_.c_str(), "wb");
-  if (file_ == nullptr) fail("cannot be created");
+AtomicFile::AtomicFile(std::string path, Writer writer) : path_(std::move(path)) {
+  const std::string folder = folder_of(path_).string();
+  make_folder(folder);
+  if (writer == Writer::Ours) descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor_ >= 0) return;
+  temporary_ = temporary_name(path_);
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail("cannot be created");
+  ::flock(descriptor_, LOCK_EX | LOCK_NB);  // tells sweep_temporaries that somebody is at work
 }
 
 AtomicFile::~AtomicFile() {
-  if (file_ == nullptr) return;
-  std::fclose(file_);
-  std::remove(temporary_.c_str());
+  if (descriptor_ < 0) return;
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  ::close(descriptor_);
 }
 
 void AtomicFile::fail(const char* what) const {
@@ -51,19 +70,36 @@ void AtomicFile::fail(const char* what) const {
 }
 
 void AtomicFile::write(std::span<const std::uint8_t> bytes) {
-  if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail("cannot be written");
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      if (written == 0) errno = ENOSPC;
+      fail("cannot be written");
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
 }
 
-void AtomicFile::commit() {
-  if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("cannot be written");
-  std::FILE* file = file_;
-  file_ = nullptr;
-  const bool closed = std::fclose(file) == 0;
-  if (closed && std::rename(temporary_.c_str(), path_.c_str()) == 0) return;
-  const int code = errno;
-  std::remove(temporary_.c_str());
-  errno = code;
-  fail("cannot be written");
+void AtomicFile::give_name() {
+  if (temporary_.empty()) {
+    const std::string unnamed = fmt::format("/proc/self/fd/{}", descriptor_);
+    if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, path_.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
+    if (errno != EEXIST) fail("cannot be written");
+    const std::string name = temporary_name(path_);
+    if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) fail("cannot be written");
+    temporary_ = name;
+  }
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot be written");
+  temporary_.clear();
+}
+
+void AtomicFile::commit(Flush flush) {
+  if (flush == Flush::ToDisk && ::fsync(descriptor_) != 0) fail("cannot be written");
+  give_name();
+  const int descriptor = descriptor_;
+  descriptor_ = -1;
+  if (::close(descriptor) != 0) fail("cannot be written");  // network file systems report a full disk here
 }
 
 void write_file(const std::string& path, std::span<const std::uint8_t> bytes) {
@@ -74,6 +110,18 @@ void write_file(const std::string& path, std::span<const std::uint8_t> bytes) {
 
 void write_file(const std::string& path, const std::string& text) {
   write_file(path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+bool link_file(const std::string& from, const std::string& to) {
+  make_folder(folder_of(to).string());
+  if (::link(from.c_str(), to.c_str()) == 0) return true;
+  if (errno != EEXIST) return false;
+  const std::string name = temporary_name(to);
+  if (::link(from.c_str(), name.c_str()) != 0) return false;
+  // rename() does nothing, and leaves both names, where they are links to one file already.
+  const bool renamed = ::rename(name.c_str(), to.c_str()) == 0;
+  ::unlink(name.c_str());
+  return renamed;
 }
 
 std::vector<std::uint8_t> read_file(const std::string& path) {
@@ -95,6 +143,30 @@ void make_folder(const std::string& path) {
   if (!code && fs::is_directory(path)) return;
   const std::string reason = code ? code.message() : "something that is no folder has this name";
   throw work_error(fmt::format("{}: cannot be made a folder: {}.\n  {}", path, reason, advice(code.value())));
+}
+
+void require_writable(const std::string& folder) {
+  make_folder(folder);
+  const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor >= 0) {
+    ::close(descriptor);
+  } else {
+    const AtomicFile probe((fs::path(folder) / "writable").string());
+  }
+}
+
+int sweep_temporaries(const std::string& folder) {
+  int swept = 0;
+  std::error_code problem;
+  for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with('.') || !name.ends_with(kTemporaryEnding)) continue;
+    const int descriptor = ::open(entry->path().c_str(), O_RDWR | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    const auto lock = FileLock::try_adopt(descriptor, FileLock::Sharing::Exclusive);
+    if (lock && ::unlink(entry->path().c_str()) == 0) ++swept;
+  }
+  return swept;
 }
 
 }  // namespace softreel

@@ -10,7 +10,9 @@
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/tetrahedralize.h"
+#include "tool/stages/atomic_file.h"
 #include "tool/stages/bytes.h"
+#include "tool/stages/stage_names.h"
 
 namespace softreel {
 namespace {
@@ -87,6 +89,7 @@ LoadedBody load_body(const BodySettings& body, const RunContext& context) {
   const ScopedStage stage(context.times, "load");
   const std::string field = fmt::format("body.{}.mesh", body.name);
   LoadedBody loaded;
+  loaded.file_checksum = at_field(body.mesh_origin, field, [&] { return hash_bytes(read_file(body.mesh)); });
   loaded.file_mesh = at_field(body.mesh_origin, field, [&] { return import_mesh(body.mesh, context.log); });
   const MeshFacts facts = check_mesh(loaded.file_mesh);
   loaded.facts = describe(facts);
@@ -105,23 +108,22 @@ StageKey filled_key(const BodySettings& body, const LoadedBody& loaded) {
   return KeyHasher(kFillVersion).add(loaded.key).add(body.edge).add(body.tets).key();
 }
 
-FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const RunContext& context) {
+FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const StageKey& key,
+                     const RunContext& context) {
   FilledBody filled;
-  filled.key = filled_key(body, loaded);
   filled.normals = vertex_normals(loaded.surface, loaded.surface.positions);
-  if (const auto bytes = context.cache.load("tetrahedra", filled.key)) {
-    unpack(*bytes, filled);
-    filled.from_cache = true;
-    return filled;
-  }
-  filled.mesh =
-      tetrahedralize(loaded.surface, {body.edge, body.tets}, body.name, context.threads, context.log, context.times);
-  context.stop_if_cancelled();
-  {
+  const auto fill = [&] {
+    filled.mesh =
+        tetrahedralize(loaded.surface, {body.edge, body.tets}, body.name, context.threads, context.log, context.times);
     const ScopedStage stage(context.times, "tetrahedralize/embed");
     filled.embedding = embed_points(loaded.surface.positions, filled.normals, filled.mesh, context.threads);
-  }
-  context.cache.store("tetrahedra", filled.key, pack(filled));
+    return pack(filled);
+  };
+  const Cache::Produced produced = context.cache.produce(
+      kTetrahedraStage, key, [&] { context.stop_if_cancelled(); }, fill);
+  filled.from_cache = produced.from_cache;
+  filled.seconds = produced.seconds;
+  if (produced.from_cache) unpack(produced.bytes, filled);
   return filled;
 }
 
@@ -176,8 +178,8 @@ std::vector<double> pull_weights(const std::vector<Index>& points, const Surface
 
 }  // namespace
 
-void resolve_constraints(const BodySettings& body, const SurfaceMesh& surface, std::vector<Pin>& pins,
-                         std::vector<Pull>& pulls) {
+BodyConstraints resolve_constraints(const BodySettings& body, const SurfaceMesh& surface) {
+  BodyConstraints resolved;
   const Bounds box = used_bounds(surface);
   for (std::size_t i = 0; i < body.pins.size(); ++i) {
     const PinSettings& settings = body.pins[i];
@@ -186,7 +188,7 @@ void resolve_constraints(const BodySettings& body, const SurfaceMesh& surface, s
     pin.points = select_or_fail(settings.select, surface, settings.origin, field);
     pin.track = keys_in_meters(settings.keys, settings.keys_in_box, settings.pivot_given, box,
                                centroid_of(pin.points, surface));
-    pins.push_back(std::move(pin));
+    resolved.pins.push_back(std::move(pin));
   }
   for (std::size_t i = 0; i < body.pulls.size(); ++i) {
     const PullSettings& settings = body.pulls[i];
@@ -205,12 +207,44 @@ void resolve_constraints(const BodySettings& body, const SurfaceMesh& surface, s
     pull.stiffness = settings.stiffness;
     pull.max_force = settings.max_force;
     pull.active = settings.active;
-    pulls.push_back(std::move(pull));
+    resolved.pulls.push_back(std::move(pull));
+  }
+  return resolved;
+}
+
+namespace {
+
+std::string region_field(const BodySettings& body, std::size_t index) {
+  return fmt::format("body.{}.region[{}]", body.name, index);
+}
+
+void add(KeyHasher& key, const ElementMaterial& m) {
+  key.add(m.youngs_modulus).add(m.poisson_ratio).add(m.density).add(m.damping_mass).add(m.damping_stiffness);
+}
+
+/// The numbers of a selection; what it takes by name or by nearness is covered by the points it takes.
+void add(KeyHasher& key, const SelectionTerm& term) {
+  key.add(term.unit).add(term.shape.index());
+  if (const auto* box = std::get_if<SelectBox>(&term.shape)) key.add(box->min).add(box->max);
+  if (const auto* sphere = std::get_if<SelectSphere>(&term.shape)) key.add(sphere->center).add(sphere->radius);
+  if (const auto* plane = std::get_if<SelectPlane>(&term.shape)) key.add(plane->point).add(plane->normal);
+}
+
+}  // namespace
+
+void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, const SurfaceMesh& surface) {
+  add(key, find_material(shot, body.material).physics);
+  for (std::size_t i = 0; i < body.regions.size(); ++i) {
+    const RegionSettings& region = body.regions[i];
+    for (const SelectionTerm& term : region.select.terms) add(key, term);
+    key.add(select_or_fail(region.select, surface, region.origin, region_field(body, i)));
+    key.add(region.material.has_value()).add(region.stiffness.value_or(0.0));
+    if (region.material) add(key, find_material(shot, *region.material).physics);
   }
 }
 
 BodyModel make_body_model(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
-                          const FilledBody& filled) {
+                          const FilledBody& filled, const BodyConstraints& constraints) {
   BodyModel model;
   model.name = body.name;
   model.mesh = filled.mesh;
@@ -220,10 +254,7 @@ BodyModel make_body_model(const Shot& shot, const BodySettings& body, const Load
   const ElementMaterial base = find_material(shot, body.material).physics;
   model.materials.assign(filled.mesh.tets.size(), base);
   const std::vector<Vec3> centroids = element_centroids(filled.mesh);
-  for (std::size_t i = 0; i < body.regions.size(); ++i) {
-    const RegionSettings& region = body.regions[i];
-    const std::string field = fmt::format("body.{}.region[{}]", body.name, i);
-    select_or_fail(region.select, loaded.surface, region.origin, field);
+  for (const RegionSettings& region : body.regions) {
     const std::vector<bool> inside = contains(region.select, loaded.surface, centroids);
     for (std::size_t e = 0; e < inside.size(); ++e) {
       if (!inside[e]) continue;
@@ -231,7 +262,8 @@ BodyModel make_body_model(const Shot& shot, const BodySettings& body, const Load
       if (region.stiffness) model.materials[e].youngs_modulus = base.youngs_modulus * *region.stiffness;
     }
   }
-  resolve_constraints(body, loaded.surface, model.pins, model.pulls);
+  model.pins = constraints.pins;
+  model.pulls = constraints.pulls;
   return model;
 }
 

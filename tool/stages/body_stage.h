@@ -20,32 +20,44 @@ struct LoadedBody {
   Placement placement;
   std::vector<std::string> facts;  ///< what check and repair found, one line each
   StageKey key;                    ///< of surface.positions and surface.triangles
+  StageKey file_checksum;          ///< of the mesh file's bytes
 };
 
 /// Reads, checks, repairs and places the mesh of a body. Throws input_error.
 LoadedBody load_body(const BodySettings& body, const RunContext& context);
+
+/// Pins and pulls on points of the surface.
+struct BodyConstraints {
+  std::vector<Pin> pins;
+  std::vector<Pull> pulls;
+};
+
+/// Selections and keys of a body's pins and pulls, in metres. Throws input_error with the field's place for a selection
+/// that takes nothing and for groups that do not exist.
+BodyConstraints resolve_constraints(const BodySettings& body, const SurfaceMesh& surface);
 
 /// The tetrahedra of a body with its surface embedded in them.
 struct FilledBody {
   TetMesh mesh;
   Embedding embedding;
   std::vector<Vec3> normals;  ///< of the surface at rest
-  StageKey key;
   bool from_cache = false;
+  double seconds = 0;  ///< what filling took, now or when it was stored
 };
 
-FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const RunContext& context);
-
-/// The key that fill_body would give, without filling.
+/// Version and inputs of fill_body.
 StageKey filled_key(const BodySettings& body, const LoadedBody& loaded);
 
-/// What the simulator takes: materials per element, pins and pulls on points. Throws input_error with the field's place
-/// for a selection that takes nothing and for groups that do not exist.
-BodyModel make_body_model(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
-                          const FilledBody& filled);
+/// Fills the body, or reads it from the cache; `key` is its filled_key.
+FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const StageKey& key,
+                     const RunContext& context);
 
-/// The selections of make_body_model alone, checked without tetrahedra: pins and pulls on surface points.
-void resolve_constraints(const BodySettings& body, const SurfaceMesh& surface, std::vector<Pin>& pins,
-                         std::vector<Pull>& pulls);
+/// Adds what shapes the materials of a body's elements: its own, and its regions. Throws input_error as
+/// resolve_constraints, for regions.
+void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, const SurfaceMesh& surface);
+
+/// What the simulator takes: materials per element, pins and pulls on points.
+BodyModel make_body_model(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
+                          const FilledBody& filled, const BodyConstraints& constraints);
 
 }  // namespace softreel

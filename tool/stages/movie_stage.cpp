@@ -1,5 +1,6 @@
 #include "tool/stages/movie_stage.h"
 
+#include <chrono>
 #include <filesystem>
 #include <vector>
 
@@ -25,13 +26,16 @@ std::vector<std::string> ffmpeg_command(const Shot& shot, int first, int last, c
           "-start_number", std::to_string(first), "-i", pattern, "-frames:v", std::to_string(last - first + 1),
           // H.264 wants even sizes; yuv420p is what every player reads.
           "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p", "-c:v", "libx264", "-crf", "16", "-preset", "medium",
-          "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", target};
+          "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", "-f", "mp4", target};
 }
 
 StageKey movie_key(const Shot& shot, int first, int last, const Outputs& outputs) {
-  KeyHasher key("movie 1");
+  KeyHasher key("movie 2");
   key.add(shot.settings.fps);
-  for (int frame = first; frame <= last; ++frame) key.add(outputs.checksum(outputs.frame_path(frame, "png")));
+  for (int frame = first; frame <= last; ++frame) {
+    const auto entry = outputs.entry(outputs.frame_path(frame, "png"));
+    key.add(entry ? entry->checksum : "");
+  }
   return key.key();
 }
 
@@ -42,28 +46,31 @@ std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, 
   const StageKey key = movie_key(shot, first, last, outputs);
   if (outputs.is_done(path, key)) return path;
   const ScopedStage stage(context.times, "encode");
-  const std::string part =
-      (std::filesystem::path(outputs.folder()) / ("." + outputs.shot_name() + ".part.mp4")).string();
-  const std::string log = part + ".log";
-  const int status = run_process(ffmpeg_command(shot, first, last, outputs, part), log);
+  const auto start = std::chrono::steady_clock::now();
+  AtomicFile movie(path, AtomicFile::Writer::Others);
+  std::string said;
+  const int status = run_process(ffmpeg_command(shot, first, last, outputs, movie.temporary_path()), &said);
   context.stop_if_cancelled();
-  const std::vector<std::uint8_t> said = std::filesystem::exists(log) ? read_file(log) : std::vector<std::uint8_t>{};
-  std::filesystem::remove(log);
-  if (status != 0) {
-    std::filesystem::remove(part);
-    if (status == -1 || status == 127)
-      throw work_error(fmt::format(
-          "{}: the movie was not made: the program ffmpeg was not found.\n  All frames are there. Install the package "
-          "ffmpeg and run again (only the movie will be made), or set output.movie = false.",
-          path));
+  if (status == -1 || status == 127)
+    throw work_error(fmt::format(
+        "{}: the movie was not made: the program ffmpeg was not found.\n  All frames are there. Install the package "
+        "ffmpeg and run again (only the movie will be made), or set output.movie = false.",
+        path));
+  // ffmpeg ends with 0 even if it could not write the end of the file, but it says so.
+  if (status != 0 || !said.empty())
     throw work_error(
         fmt::format("{}: the movie was not made: ffmpeg ended with status {}: {}\n  All frames are there. "
                     "Run again to try once more, or set output.movie = false.",
-                    path, status, std::string(said.begin(), said.end())));
-  }
-  std::filesystem::rename(part, path);
-  outputs.enter(path, key);
+                    path, status, said));
+  movie.commit();
+  outputs.enter(path, key, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return path;
+}
+
+bool is_movie_outdated(const Shot& shot, int first, int last, const Outputs& outputs) {
+  const std::string path = outputs.path("mp4");
+  return std::filesystem::exists(path) &&
+         outputs.claimed_state(path, movie_key(shot, first, last, outputs)) != OutputState::Done;
 }
 
 }  // namespace softreel

@@ -1,33 +1,69 @@
 #include "tool/stages/outputs.h"
 
 #include <filesystem>
+#include <fstream>
+#include <random>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/base/check.h"
 #include "core/base/error.h"
 #include "tool/stages/atomic_file.h"
+#include "tool/stages/file_lock.h"
 
 namespace softreel {
 namespace fs = std::filesystem;
+namespace {
+
+constexpr int kManifestFormat = 2;
+
+std::string name_of(const std::string& path) {
+  return fs::path(path).filename().string();
+}
+
+std::string settings_id_of(const SettingsSnapshot& settings) {
+  KeyHasher key("settings");
+  for (const auto& [field, value] : settings) key.add(field).add(value);
+  return key.key();
+}
+
+}  // namespace
 
 Outputs::Outputs(std::string folder, std::string shot_name, const Log& log)
     : folder_(std::move(folder)), shot_name_(std::move(shot_name)), log_(log) {
-  if (!fs::exists(manifest_path())) return;
-  try {
-    const auto bytes = read_file(manifest_path());
-    const auto json = nlohmann::json::parse(bytes.begin(), bytes.end());
-    for (const auto& [name, entry] : json.at("files").items())
-      entries_[name] = {entry.at("key").get<std::string>(), entry.at("checksum").get<std::string>()};
-  } catch (const std::exception& problem) {
-    entries_.clear();
-    log_.warn(fmt::format("{}: damaged ({}); its files are made again.", manifest_path(), problem.what()));
-  }
+  contents_ = read();
 }
 
 std::string Outputs::manifest_path() const {
   return (fs::path(folder_) / (shot_name_ + ".manifest.json")).string();
+}
+
+Outputs::Contents Outputs::read() const {
+  Contents contents;
+  if (!fs::exists(manifest_path())) return contents;
+  try {
+    const auto bytes = read_file(manifest_path());
+    const auto json = nlohmann::json::parse(bytes.begin(), bytes.end());
+    if (const int format = json.at("format").get<int>(); format != kManifestFormat) {
+      log_.warn(fmt::format("{}: is of format {}, this softreel reads format {}; its files are made again.",
+                            manifest_path(), format, kManifestFormat));
+      return contents;
+    }
+    for (const auto& [name, entry] : json.at("files").items())
+      contents.entries[name] = {entry.at("key").get<std::string>(), entry.at("checksum").get<std::string>(),
+                                entry.at("seconds").get<double>(), entry.at("settings").get<std::string>()};
+    contents.settings = json.at("settings").get<std::map<std::string, SettingsSnapshot>>();
+    contents.simulated = json.at("simulated").get<std::string>();
+  } catch (const std::exception& problem) {
+    contents = {};
+    log_.warn(fmt::format("{}: damaged ({}); its files are made again.", manifest_path(), problem.what()));
+  }
+  return contents;
+}
+
+void Outputs::set_settings(const SettingsSnapshot& settings) {
+  settings_ = settings;
+  settings_id_ = settings_id_of(settings);
 }
 
 std::string Outputs::frame_path(int frame, const std::string& extension) const {
@@ -38,43 +74,114 @@ std::string Outputs::path(const std::string& extension) const {
   return (fs::path(folder_) / fmt::format("{}.{}", shot_name_, extension)).string();
 }
 
-bool Outputs::is_done(const std::string& path, const StageKey& key) const {
-  const auto entry = entries_.find(fs::path(path).filename().string());
-  if (entry == entries_.end() || entry->second.key != key || !fs::is_regular_file(path)) return false;
-  if (hash_bytes(read_file(path)) == entry->second.checksum) return true;
-  log_.warn(fmt::format("{}: damaged or changed since it was made; it is made again.", path));
-  return false;
+std::optional<OutputEntry> Outputs::entry(const std::string& path) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = contents_.entries.find(name_of(path));
+  if (found == contents_.entries.end()) return std::nullopt;
+  return found->second;
 }
 
-std::optional<std::vector<std::uint8_t>> Outputs::find_equal(const StageKey& key) const {
-  for (const auto& [name, entry] : entries_) {
-    const std::string path = (fs::path(folder_) / name).string();
-    if (entry.key == key && is_done(path, key)) return read_file(path);
+std::optional<SettingsSnapshot> Outputs::settings(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = contents_.settings.find(id);
+  if (found == contents_.settings.end()) return std::nullopt;
+  return found->second;
+}
+
+std::string Outputs::simulated_settings() const {
+  const std::lock_guard lock(mutex_);
+  return contents_.simulated;
+}
+
+OutputState Outputs::claimed_state(const std::string& path, const StageKey& key) const {
+  std::error_code none;
+  if (!fs::exists(path, none)) return OutputState::Missing;
+  const std::optional<OutputEntry> known = entry(path);
+  if (!known) return OutputState::Unknown;
+  return known->key == key ? OutputState::Done : OutputState::Stale;
+}
+
+OutputState Outputs::state(const std::string& path, const StageKey& key) const {
+  const OutputState claimed = claimed_state(path, key);
+  if (claimed != OutputState::Done) return claimed;
+  try {
+    return hash_bytes(read_file(path)) == entry(path)->checksum ? OutputState::Done : OutputState::Damaged;
+  } catch (const Error&) {
+    return OutputState::Damaged;  // a folder of this name, say
   }
-  return std::nullopt;
 }
 
-void Outputs::write(const std::string& path, const StageKey& key, std::span<const std::uint8_t> bytes) {
+bool Outputs::is_done(const std::string& path, const StageKey& key) const {
+  const OutputState found = state(path, key);
+  if (found == OutputState::Damaged)
+    log_.warn(fmt::format("{}: damaged or changed since it was made; it is made again.", path));
+  return found == OutputState::Done;
+}
+
+void Outputs::insert(const std::string& path, const OutputEntry& entry) {
+  update([&](Contents& contents) { contents.entries[name_of(path)] = entry; });
+}
+
+void Outputs::write(const std::string& path, const StageKey& key, std::span<const std::uint8_t> bytes, double seconds) {
   write_file(path, bytes);
-  entries_[fs::path(path).filename().string()] = {key, hash_bytes(bytes)};
-  write_manifest();
+  insert(path, {key, hash_bytes(bytes), seconds, settings_id_});
 }
 
-void Outputs::enter(const std::string& path, const StageKey& key) {
-  entries_[fs::path(path).filename().string()] = {key, hash_bytes(read_file(path))};
-  write_manifest();
+void Outputs::link(const std::string& path, const StageKey& key, const std::string& stored_path,
+                   std::span<const std::uint8_t> bytes, double seconds) {
+  if (!link_file(stored_path, path)) write_file(path, bytes);
+  insert(path, {key, hash_bytes(bytes), seconds, settings_id_});
 }
 
-std::string Outputs::checksum(const std::string& path) const {
-  const auto entry = entries_.find(fs::path(path).filename().string());
-  CHECK(entry != entries_.end());
-  return entry->second.checksum;
+void Outputs::enter(const std::string& path, const StageKey& key, double seconds) {
+  insert(path, {key, hash_bytes(read_file(path)), seconds, settings_id_});
+}
+
+void Outputs::remove(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    std::error_code failed;
+    fs::remove(path, failed);
+    if (failed) throw work_error(fmt::format("{}: cannot be removed: {}.", path, failed.message()));
+  }
+  update([&](Contents& contents) {
+    for (const std::string& path : paths) contents.entries.erase(name_of(path));
+  });
+}
+
+void Outputs::note_simulation() {
+  if (simulated_settings() == settings_id_) return;
+  update([&](Contents& contents) { contents.simulated = settings_id_; });
+}
+
+void Outputs::update(const std::function<void(Contents&)>& change) {
+  const std::lock_guard in_process(mutex_);
+  make_folder(folder_);
+  // The lock file holds a random text that each writer replaces: whoever finds another one reads the manifest again.
+  const std::string lock_path = (fs::path(folder_) / fmt::format(".{}.manifest.lock", shot_name_)).string();
+  const FileLock lock = FileLock::take(lock_path);
+  std::string revision;
+  std::getline(std::ifstream(lock_path), revision);
+  if (revision != revision_) contents_ = read();
+  change(contents_);
+  if (!settings_id_.empty()) contents_.settings[settings_id_] = settings_;
+  std::set<std::string> used{contents_.simulated, settings_id_};
+  for (const auto& [name, entry] : contents_.entries) used.insert(entry.settings);
+  std::erase_if(contents_.settings, [&](const auto& item) { return used.count(item.first) == 0; });
+  revision_ = fmt::format("{:08x}{:08x}", std::random_device{}(), std::random_device{}());
+  std::ofstream(lock_path, std::ios::trunc) << revision_ << "\n";
+  write_manifest();
 }
 
 void Outputs::write_manifest() const {
   nlohmann::json files = nlohmann::json::object();
-  for (const auto& [name, entry] : entries_) files[name] = {{"key", entry.key}, {"checksum", entry.checksum}};
-  const nlohmann::json manifest = {{"format", 1}, {"shot", shot_name_}, {"files", files}};
+  for (const auto& [name, entry] : contents_.entries)
+    files[name] = {
+        {"key", entry.key}, {"checksum", entry.checksum}, {"seconds", entry.seconds}, {"settings", entry.settings}};
+  const nlohmann::json manifest = {{"format", kManifestFormat},
+                                   {"shot", shot_name_},
+                                   {"files", files},
+                                   {"settings", contents_.settings},
+                                   {"simulated", contents_.simulated}};
   write_file(manifest_path(), manifest.dump(1) + "\n");
 }
 

@@ -1,19 +1,37 @@
-/// The files a run leaves in its output folder, and manifest.json, which knows their keys and checksums.
+/// The files a run leaves in its output folder, and SHOT.manifest.json, which knows their keys and checksums.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/log.h"
 #include "tool/stages/key.h"
 
 namespace softreel {
 
+/// What the manifest says of one file.
+struct OutputEntry {
+  StageKey key;  ///< of everything that made it
+  std::string checksum;
+  double seconds = 0;    ///< what making it took
+  std::string settings;  ///< id of the settings it was made with, for saying why it is stale
+};
+
+/// The settings of a shot as one text per field, with the checksums of the files it reads.
+using SettingsSnapshot = std::map<std::string, std::string>;
+
+enum class OutputState { Missing, Unknown, Stale, Damaged, Done };
+
 /// One output folder of one shot. A file counts as done only if the manifest has its key and its bytes have the
-/// manifest's checksum. The manifest is written after each file, so that a killed run loses at most one file.
+/// manifest's checksum. The manifest is written after each file, merged with what other processes wrote meanwhile.
+/// Thread-safe.
 class Outputs {
  public:
   /// Reads the manifest if there is one; a damaged one is said, and all files count as unknown.
@@ -26,28 +44,51 @@ class Outputs {
   const std::string& folder() const { return folder_; }
   const std::string& shot_name() const { return shot_name_; }
 
-  /// True if the file is there, whole, and made from this key.
+  /// What files written from now on are made with.
+  void set_settings(const SettingsSnapshot& settings);
+
+  /// Reads the file to verify it.
+  OutputState state(const std::string& path, const StageKey& key) const;
+  /// The same without reading: Done may be damaged.
+  OutputState claimed_state(const std::string& path, const StageKey& key) const;
+  /// True if the file is there, whole, and made from this key; a damaged one is said.
   bool is_done(const std::string& path, const StageKey& key) const;
-  /// The bytes of any whole file that was made from this key, under whatever name.
-  std::optional<std::vector<std::uint8_t>> find_equal(const StageKey& key) const;
+  std::optional<OutputEntry> entry(const std::string& path) const;
+  std::optional<SettingsSnapshot> settings(const std::string& id) const;
+
   /// Writes the file, then the manifest. Throws work_error.
-  void write(const std::string& path, const StageKey& key, std::span<const std::uint8_t> bytes);
+  void write(const std::string& path, const StageKey& key, std::span<const std::uint8_t> bytes, double seconds);
+  /// Gives a stored file this name too (a copy where links do not reach), then writes the manifest.
+  void link(const std::string& path, const StageKey& key, const std::string& stored_path,
+            std::span<const std::uint8_t> bytes, double seconds);
   /// Enters a file that somebody else wrote (ffmpeg).
-  void enter(const std::string& path, const StageKey& key);
-  /// Checksum of a file that is in the manifest.
-  std::string checksum(const std::string& path) const;
+  void enter(const std::string& path, const StageKey& key, double seconds);
+  /// Removes files, and their entries.
+  void remove(const std::vector<std::string>& paths);
+
+  /// Last simulation of the shot in this folder: the id of its settings, empty if there was none.
+  std::string simulated_settings() const;
+  void note_simulation();
 
  private:
-  struct Entry {
-    StageKey key;
-    std::string checksum;
+  struct Contents {
+    std::map<std::string, OutputEntry> entries;  ///< by file name
+    std::map<std::string, SettingsSnapshot> settings;
+    std::string simulated;
   };
+  void update(const std::function<void(Contents&)>& change);
+  Contents read() const;
   void write_manifest() const;
   std::string manifest_path() const;
+  void insert(const std::string& path, const OutputEntry& entry);
 
   std::string folder_, shot_name_;
   const Log& log_;
-  std::map<std::string, Entry> entries_;  ///< by file name
+  mutable std::mutex mutex_;  ///< of what follows
+  Contents contents_;
+  SettingsSnapshot settings_;
+  std::string settings_id_;
+  std::string revision_;  ///< of the manifest that contents_ holds
 };
 
 }  // namespace softreel

@@ -2,47 +2,134 @@
 
 #include <algorithm>
 
+#include "core/base/check.h"
+#include "render/image/half_picture.h"
 #include "render/image/image_io.h"
 
 namespace softreel {
+namespace {
 
-PictureStage::PictureStage(const Shot& shot, Outputs& outputs, const RunContext& context)
-    : shot_(shot), outputs_(outputs), context_(context) {}
+/// Scene-linear pixels in half precision: what display pictures are developed from, now and later.
+constexpr const char* kLinear = "half";
 
-std::vector<PictureStage::Wanted> PictureStage::wanted_files(int frame, const StageKey& picture) const {
-  std::vector<Wanted> wanted;
-  const OutputSettings& output = shot_.output;
-  if (output.png)
-    wanted.push_back({outputs_.frame_path(frame, "png"),
-                      KeyHasher("png 1").add(picture).add(output.view).add(output.exposure).key()});
-  if (output.exr) wanted.push_back({outputs_.frame_path(frame, "exr"), KeyHasher("exr 1").add(picture).key()});
-  return wanted;
+}  // namespace
+
+PictureStage::PictureStage(const SceneStage& scenes, const Shot& shot, Outputs& outputs, const RunContext& context)
+    : scenes_(scenes), shot_(shot), outputs_(outputs), context_(context) {}
+
+StageKey PictureStage::file_key(const std::string& extension, const StageKey& picture) const {
+  KeyHasher key(extension + " 2");
+  key.add(picture);
+  if (extension == "png") key.add(shot_.output.view).add(shot_.output.exposure);
+  return key.key();
 }
 
-std::vector<std::uint8_t> PictureStage::encode(const std::string& path, const Image& image) const {
-  const ScopedStage stage(context_.times, "write");
-  if (path.ends_with(".exr")) return encode_exr(image);
-  return encode_png(to_display(image, shot_.output.view, static_cast<float>(shot_.output.exposure)));
+std::vector<PictureStage::File> PictureStage::files(int frame, const StageKey& picture) const {
+  std::vector<File> files;
+  for (const auto& [extension, wanted] : {std::pair("png", shot_.output.png), std::pair("exr", shot_.output.exr)})
+    if (wanted) files.push_back({outputs_.frame_path(frame, extension), extension, file_key(extension, picture)});
+  return files;
 }
 
-PictureSource PictureStage::make(int frame, const Scene& scene) {
-  std::vector<Wanted> missing = wanted_files(frame, picture_key(scene, shot_.render.params));
-  std::erase_if(missing, [&](const Wanted& file) { return outputs_.is_done(file.path, file.key); });
-  if (missing.empty()) return PictureSource::Done;
-  std::erase_if(missing, [&](const Wanted& file) {
-    const auto equal = outputs_.find_equal(file.key);
-    if (equal) outputs_.write(file.path, file.key, *equal);
-    return equal.has_value();
-  });
-  if (missing.empty()) return PictureSource::Linked;
-  if (!tracer_) tracer_ = std::make_unique<PathTracer>(context_.threads, context_.times);
-  Image image;
-  {
-    const ScopedStage stage(context_.times, "render");
-    image = tracer_->render(scene, shot_.render.params, [this] { return context_.cancelled.load(); });
+std::vector<CacheItem> PictureStage::items(int first, int last) const {
+  std::vector<CacheItem> items;
+  for (int frame = first; frame <= last; ++frame) {
+    const StageKey trace = trace_key(frame);
+    items.push_back(cache_item(kPictureStage, file_key(kLinear, trace)));
+    for (const File& file : files(frame, trace)) items.push_back(cache_item(kPictureStage, file.key));
   }
-  for (const Wanted& file : missing) outputs_.write(file.path, file.key, encode(file.path, image));
-  return PictureSource::Traced;
+  return items;
+}
+
+bool PictureStage::is_kept(int frame) const {
+  const std::vector<File> wanted = files(frame, trace_key(frame));
+  return std::all_of(wanted.begin(), wanted.end(),
+                     [&](const File& file) { return outputs_.is_done(file.path, file.key); });
+}
+
+double PictureStage::seconds(int frame) const {
+  double seconds = 0;
+  for (const File& file : files(frame, trace_key(frame)))
+    if (const auto entry = outputs_.entry(file.path)) seconds = std::max(seconds, entry->seconds);
+  return seconds;
+}
+
+int PictureStage::remove_outdated(int first, int last) {
+  std::vector<std::string> outdated;
+  for (int frame = first; frame <= last; ++frame)
+    for (const File& file : files(frame, trace_key(frame))) {
+      const OutputState state = outputs_.claimed_state(file.path, file.key);
+      if (state == OutputState::Stale || state == OutputState::Unknown) outdated.push_back(file.path);
+    }
+  if (!outdated.empty()) outputs_.remove(outdated);
+  return static_cast<int>(outdated.size());
+}
+
+bool PictureStage::recall(int frame, const StageKey& picture) {
+  struct Found {
+    File file;
+    PictureRecord record;
+    Bytes bytes;
+  };
+  const StageKey trace = trace_key(frame);
+  std::vector<Found> found;
+  for (const File& file : files(frame, trace)) {
+    const auto record = load_picture_record(context_.cache, file_key(file.extension, picture));
+    if (!record) return false;
+    auto bytes = context_.cache.load_file(record->extension, record->checksum);
+    if (!bytes) return false;
+    found.push_back({file, *record, std::move(*bytes)});
+  }
+  for (const Found& one : found) {
+    const std::string stored = context_.cache.file_path(one.record.extension, one.record.checksum);
+    outputs_.link(one.file.path, one.file.key, stored, one.bytes, one.record.seconds);
+    if (picture != trace) store_picture_record(context_.cache, one.file.key, one.record);
+  }
+  return true;
+}
+
+Bytes PictureStage::encode_display(const Bytes& half) const {
+  const ScopedStage stage(context_.times, "write");
+  return encode_png(to_display(decode_half(half), shot_.output.view, static_cast<float>(shot_.output.exposure)));
+}
+
+bool PictureStage::develop(int frame, const StageKey& picture) {
+  if (!shot_.output.png) return false;
+  const auto linear = load_picture_record(context_.cache, file_key(kLinear, picture));
+  if (!linear) return false;
+  const auto half = context_.cache.load_file(kLinear, linear->checksum);
+  if (!half) return false;
+  // The display picture goes to the cache; then all files of the frame come from there, or the frame must be traced.
+  const Bytes png = encode_display(*half);
+  const PictureRecord record{"png", context_.cache.store_file("png", png), linear->seconds};
+  store_picture_record(context_.cache, file_key("png", picture), record);
+  if (shot_.output.exr) return recall(frame, picture);
+  const File file = files(frame, trace_key(frame)).front();
+  outputs_.link(file.path, file.key, context_.cache.file_path("png", record.checksum), png, record.seconds);
+  return true;
+}
+
+Image PictureStage::trace(const Scene& scene) {
+  if (!tracer_) tracer_ = std::make_unique<PathTracer>(context_.threads, context_.times);
+  const ScopedStage stage(context_.times, "render");
+  return tracer_->render(scene, shot_.render.params, [this] { return context_.cancelled.load(); });
+}
+
+void PictureStage::keep(int frame, const StageKey& content, const Image& image, double seconds) {
+  const StageKey trace = trace_key(frame);
+  const auto store = [&](const std::string& extension, const Bytes& bytes) {
+    const PictureRecord record{extension, context_.cache.store_file(extension, bytes), seconds};
+    for (const StageKey& picture : {trace, content})
+      store_picture_record(context_.cache, file_key(extension, picture), record);
+    return context_.cache.file_path(extension, record.checksum);
+  };
+  const Bytes half = encode_half(image);
+  store(kLinear, half);
+  for (const File& file : files(frame, trace)) {
+    const Bytes bytes = file.extension == "exr" ? encode_exr(image) : encode_display(half);
+    const std::string stored = store(file.extension, bytes);
+    outputs_.link(file.path, file.key, stored, bytes, seconds);
+  }
 }
 
 }  // namespace softreel

@@ -2,31 +2,65 @@
 #pragma once
 
 #include <memory>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "render/pathtrace/path_tracer.h"
 #include "tool/stages/outputs.h"
+#include "tool/stages/picture_record.h"
 #include "tool/stages/scene_stage.h"
 
 namespace softreel {
 
-enum class PictureSource { Done, Linked, Traced };
+/// How a frame's pictures came to the output folder.
+enum class PictureSource {
+  Kept,       ///< they were there
+  Recalled,   ///< the cache had them
+  Developed,  ///< the cache had the scene-linear picture: only the view or the exposure changed
+  Linked,     ///< another frame looks the same
+  Traced
+};
 
+/// Files of pictures in the output folder and in the cache. Thread-safe but for `trace`.
 class PictureStage {
  public:
-  PictureStage(const Shot& shot, Outputs& outputs, const RunContext& context);
+  /// All are kept by reference.
+  PictureStage(const SceneStage& scenes, const Shot& shot, Outputs& outputs, const RunContext& context);
 
-  /// Leaves the frame's PNG and EXR, as the shot asks, in the output folder: nothing to do if they are there already,
-  /// copied if an equal picture is there under another name, traced otherwise.
-  PictureSource make(int frame, const Scene& scene);
-
- private:
-  struct Wanted {
-    std::string path;
+  /// A file that the shot asks for.
+  struct File {
+    std::string path, extension;
     StageKey key;
   };
-  std::vector<Wanted> wanted_files(int frame, const StageKey& picture) const;
-  std::vector<std::uint8_t> encode(const std::string& path, const Image& image) const;
+  /// `picture`: the frame's trace_key or content_key.
+  std::vector<File> files(int frame, const StageKey& picture) const;
+  /// What the cache keeps for the pictures of these frames.
+  std::vector<CacheItem> items(int first, int last) const;
+  StageKey trace_key(int frame) const { return scenes_.trace_key(frame); }
 
+  /// True if all files are there and whole.
+  bool is_kept(int frame) const;
+  /// What making the frame's files took when they were made.
+  double seconds(int frame) const;
+  /// Removes what is under the names of these frames' files and is not theirs: pictures of an older shot, and files
+  /// that nobody knows. Returns how many.
+  int remove_outdated(int first, int last);
+
+  /// Brings the frame's files from the cache under either key, if that can be done.
+  bool recall(int frame, const StageKey& picture);
+  /// Makes the display picture of the stored scene-linear one, if that is all that is missing.
+  bool develop(int frame, const StageKey& picture);
+
+  Image trace(const Scene& scene);
+  /// Writes a traced frame's files, and stores them under both keys.
+  void keep(int frame, const StageKey& content, const Image& image, double seconds);
+
+ private:
+  Bytes encode_display(const Bytes& half) const;
+  StageKey file_key(const std::string& extension, const StageKey& picture) const;
+
+  const SceneStage& scenes_;
   const Shot& shot_;
   Outputs& outputs_;
   const RunContext& context_;

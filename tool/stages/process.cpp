@@ -1,6 +1,9 @@
 #include "tool/stages/process.h"
 
 #include <cerrno>
+#include <csignal>
+#include <mutex>
+#include <set>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -8,25 +11,81 @@
 #include <unistd.h>
 
 namespace softreel {
+namespace {
 
-int run_process(std::vector<std::string> arguments, const std::string& log_path) {
+std::mutex& children_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Programs that run_process waits for; guarded by children_mutex.
+std::set<pid_t>& children() {
+  static std::set<pid_t> running;
+  return running;
+}
+
+/// Attributes of a child that gets signals as any program does, whatever this one blocks.
+struct OpenToSignals {
+  posix_spawnattr_t value;
+  OpenToSignals() {
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_init(&value);
+    posix_spawnattr_setsigmask(&value, &none);
+    posix_spawnattr_setflags(&value, POSIX_SPAWN_SETSIGMASK);
+  }
+  ~OpenToSignals() { posix_spawnattr_destroy(&value); }
+};
+
+std::string read_to_end(int descriptor) {
+  std::string text;
+  char part[4096];
+  ssize_t size = 0;
+  while ((size = ::read(descriptor, part, sizeof part)) > 0 || (size < 0 && errno == EINTR))
+    if (size > 0) text.append(part, static_cast<std::size_t>(size));
+  return text;
+}
+
+}  // namespace
+
+int run_process(std::vector<std::string> arguments, std::string* said) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  if (!log_path.empty()) {
-    posix_spawn_file_actions_addopen(&actions, 1, log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  int pipe_ends[2] = {-1, -1};
+  if (said != nullptr && ::pipe2(pipe_ends, O_CLOEXEC) != 0) return -1;
+  if (said != nullptr) {
+    posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], 1);
+    posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], 2);
   }
   pid_t child = 0;
-  const int failed = posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  int failed = 0;
+  {
+    const OpenToSignals attributes;
+    const std::lock_guard lock(children_mutex());
+    failed = posix_spawnp(&child, argv[0], &actions, &attributes.value, argv.data(), environ);
+    if (failed == 0) children().insert(child);
+  }
   posix_spawn_file_actions_destroy(&actions);
+  if (said != nullptr) {
+    ::close(pipe_ends[1]);
+    *said = read_to_end(pipe_ends[0]);
+    ::close(pipe_ends[0]);
+  }
   if (failed != 0) return -1;
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  const std::lock_guard lock(children_mutex());
+  children().erase(child);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+void end_processes() {
+  const std::lock_guard lock(children_mutex());
+  for (const pid_t child : children()) ::kill(child, SIGTERM);
 }
 
 }  // namespace softreel

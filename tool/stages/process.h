@@ -6,8 +6,11 @@
 
 namespace softreel {
 
-/// Runs arguments[0] (found on PATH) with the rest and waits for it. Its standard output and error go to `log_path`, or
-/// to ours if that is empty. Returns its exit status, 128 + signal if it was killed, -1 if it could not be started.
-int run_process(std::vector<std::string> arguments, const std::string& log_path);
+/// Runs arguments[0] (found on PATH) with the rest and waits for it. Its standard output and error go to `said`, or to
+/// ours if that is null. Returns its exit status, 128 + signal if it was killed, -1 if it could not be started.
+int run_process(std::vector<std::string> arguments, std::string* said);
+
+/// Asks the programs that run_process waits for to end (SIGTERM). Callable from any thread.
+void end_processes();
 
 }  // namespace softreel

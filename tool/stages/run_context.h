@@ -12,7 +12,7 @@
 namespace softreel {
 
 struct RunContext {
-  const Threads& threads;
+  const Threads& threads;  ///< their loops end with an Interrupt once `cancelled` is set
   const Log& log;
   StageTimes& times;
   const Cache& cache;
@@ -20,7 +20,7 @@ struct RunContext {
 
   /// Throws an Error of kind Interrupt after Ctrl-C. Finished files stay.
   void stop_if_cancelled() const {
-    if (cancelled) throw Error(ErrorKind::Interrupt, "Interrupted; finished frames are kept, run again to go on.");
+    if (cancelled) throw interrupted();
   }
 };
 

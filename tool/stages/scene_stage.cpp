@@ -7,19 +7,30 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "core/base/error.h"
+#include "tool/stages/atomic_file.h"
 
 namespace softreel {
 
+namespace {
+
+/// Runs `work` on the environment image; its errors get the place of the field.
+template <typename Work>
+auto at_environment(const Shot& shot, Work work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(error.kind(),
+                fmt::format("{}: environment.image: {}", to_string(shot.environment_origin), error.what()));
+  }
+}
+
+}  // namespace
+
 SceneStage::SceneStage(const ShotRun& run) : run_(run), environment_(run.shot().environment) {
   const Shot& shot = run.shot();
-  if (!shot.environment_image.empty()) {
-    try {
-      environment_.image = std::make_shared<const EnvironmentImage>(read_environment(shot.environment_image));
-    } catch (const Error& error) {
-      throw Error(error.kind(),
-                  fmt::format("{}: environment.image: {}", to_string(shot.environment_origin), error.what()));
-    }
-  }
+  if (!shot.environment_image.empty())
+    environment_checksum_ = at_environment(shot, [&] { return hash_bytes(read_file(shot.environment_image)); });
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const Bounds bounds = used_bounds(run.loaded(b).surface);
     rest_bounds_.add(bounds.min);
@@ -86,23 +97,26 @@ void add(KeyHasher& key, const Camera& c) {
   if (c.f_number > 0) key.add(c.focus_distance);
 }
 
-void add(KeyHasher& key, const Environment& e) {
-  key.add(e.strength).add(e.image != nullptr);
-  if (e.image) {
-    key.add(e.rotation).add(e.image->width).add(e.image->height).add(e.image->pixels);
-  } else {
-    key.add(e.zenith).add(e.horizon).add(e.nadir);
-  }
-}
-
 }  // namespace
 
-Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) const {
+Camera SceneStage::camera(int frame) const {
+  const RenderParams& params = run_.shot().render.params;
+  return camera_at(run_.shot().camera, frame, rest_bounds_, static_cast<double>(params.width) / params.height);
+}
+
+void SceneStage::load_environment() {
+  const Shot& shot = run_.shot();
+  if (!shot.environment_image.empty() && !environment_.image)
+    environment_.image = at_environment(
+        shot, [&] { return std::make_shared<const EnvironmentImage>(read_environment(shot.environment_image)); });
+}
+
+Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
   const Shot& shot = run_.shot();
   CHECK(bodies.size() == run_.body_count());
+  load_environment();
   Scene scene;
-  const RenderParams& params = shot.render.params;
-  scene.camera = camera_at(shot.camera, frame, rest_bounds_, static_cast<double>(params.width) / params.height);
+  scene.camera = camera(frame);
   scene.area_lights = shot.area_lights;
   scene.suns = shot.suns;
   scene.environment = environment_;
@@ -119,25 +133,43 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) const {
   return scene;
 }
 
-StageKey picture_key(const Scene& scene, const RenderParams& params) {
-  KeyHasher key("picture 1");
-  add(key, scene.camera);
-  add(key, scene.environment);
-  for (const MotionMesh& mesh : scene.meshes) {
-    key.add(mesh.triangles);
-    add(key, mesh.appearance);
-    for (const MotionMesh::Time& time : mesh.times) key.add(time.positions).add(time.normals);
-  }
-  for (const AreaLight& light : scene.area_lights)
+/// All but the surfaces.
+void SceneStage::add_look(KeyHasher& key, const Camera& camera) const {
+  const Shot& shot = run_.shot();
+  add(key, camera);
+  const Environment& e = shot.environment;
+  key.add(e.strength).add(environment_checksum_);
+  if (environment_checksum_.empty())
+    key.add(e.zenith).add(e.horizon).add(e.nadir);
+  else
+    key.add(e.rotation);
+  for (std::size_t b = 0; b < run_.body_count(); ++b) add(key, shot.materials.at(run_.settings(b).material).appearance);
+  for (const AreaLight& light : shot.area_lights)
     key.add(light.center).add(light.u).add(light.v).add(light.radiance).add(light.visible);
-  for (const SunLight& sun : scene.suns) key.add(sun.direction).add(sun.irradiance).add(sun.angular_diameter);
-  if (const auto& ground = scene.ground) {
+  for (const SunLight& sun : shot.suns) key.add(sun.direction).add(sun.irradiance).add(sun.angular_diameter);
+  if (const auto& ground = shot.ground) {
     key.add(ground->style).add(ground->height).add(ground->size).add(ground->sweep);
     add(key, ground->appearance);
     key.add(ground->checker).add(ground->checker_color);
   }
+  const RenderParams& params = shot.render.params;
   key.add(params.width).add(params.height).add(params.samples).add(params.max_bounces).add(params.clamp);
   key.add(params.caustic_roughness).add(params.auxiliary);
+}
+
+StageKey SceneStage::trace_key(int frame) const {
+  KeyHasher key("trace 2");
+  add_look(key, camera(frame));
+  return key.add(run_.surfaces_key(frame, skin_request(run_.shot().render))).key();
+}
+
+StageKey SceneStage::content_key(const Scene& scene) const {
+  KeyHasher key("picture 2");
+  add_look(key, scene.camera);
+  for (const MotionMesh& mesh : scene.meshes) {
+    key.add(mesh.triangles);
+    for (const MotionMesh::Time& time : mesh.times) key.add(time.positions).add(time.normals);
+  }
   return key.key();
 }
 

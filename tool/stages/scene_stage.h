@@ -10,16 +10,31 @@
 
 namespace softreel {
 
-/// Builds scenes; loads the environment image once, and finds the framing camera from the bodies at rest.
+/// Builds scenes, and their keys without building them. Keys may be asked for by any thread, scenes by one at a time.
 class SceneStage {
  public:
+  /// Finds the framing camera from the bodies at rest; reads the bytes of the environment image, but does not decode
+  /// it before a scene needs it. run is kept by reference.
   explicit SceneStage(const ShotRun& run);
 
-  Scene at(int frame, const std::vector<SkinnedBody>& bodies) const;
+  /// Decodes the environment image, if there is one that is not decoded yet. Throws input_error.
+  void load_environment();
+  /// The scene of a frame; loads the environment first.
+  Scene at(int frame, const std::vector<SkinnedBody>& bodies);
+
+  /// Key of the picture of a frame, of what the shot says and what the surfaces depend on: known before they are.
+  StageKey trace_key(int frame) const;
+  /// Key of the picture of a scene: everything its pixels depend on, and nothing that led to it. Frames that look the
+  /// same have the same one.
+  StageKey content_key(const Scene& scene) const;
 
  private:
+  void add_look(KeyHasher& key, const Camera& camera) const;
+  Camera camera(int frame) const;
+
   const ShotRun& run_;
   Environment environment_;
+  StageKey environment_checksum_;  ///< of the image file; empty without one
   Bounds rest_bounds_;
 };
 
@@ -28,8 +43,5 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
 
 /// What a request for skinned surfaces must hold for the shot's motion blur.
 SkinRequest skin_request(const RenderSettings& settings);
-
-/// Key of a picture: everything its pixels depend on, and not the frame's number.
-StageKey picture_key(const Scene& scene, const RenderParams& params);
 
 }  // namespace softreel

@@ -3,28 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/check.h"
 #include "core/skinning/skinning.h"
+#include "tool/stages/simulate_key.h"
+#include "tool/stages/stage_names.h"
 
 namespace softreel {
 
 struct ShotRun::Body {
   LoadedBody loaded;
-  FilledBody filled;
   std::unique_ptr<BodySimulation> simulation;
-  std::vector<Vec3> previous_positions;  ///< nodes at the frame before; empty at the start
-  BodyFrame frame;
 };
 
 ShotRun::ShotRun(const Shot& shot, const RunContext& context) : shot_(shot), context_(context) {
   for (const BodySettings& settings : shot.bodies) {
+    context.stop_if_cancelled();
     auto body = std::make_unique<Body>();
     body->loaded = load_body(settings, context);
     for (const std::string& fact : body->loaded.facts) context.log.info(settings.name + ": " + fact);
     // Selections that take nothing are said before the long work starts.
-    std::vector<Pin> pins;
-    std::vector<Pull> pulls;
-    resolve_constraints(settings, body->loaded.surface, pins, pulls);
+    body->simulation = std::make_unique<BodySimulation>(shot, settings, body->loaded,
+                                                        resolve_constraints(settings, body->loaded.surface), context);
     bodies_.push_back(std::move(body));
   }
 }
@@ -35,42 +33,52 @@ const LoadedBody& ShotRun::loaded(std::size_t body) const {
   return bodies_[body]->loaded;
 }
 
-const FilledBody& ShotRun::filled(std::size_t body) const {
-  CHECK(filled_);
-  return bodies_[body]->filled;
+const BodySimulation& ShotRun::simulation(std::size_t body) const {
+  return *bodies_[body]->simulation;
 }
 
-std::vector<LevelInfo> ShotRun::levels(std::size_t body) const {
-  CHECK(filled_);
-  return bodies_[body]->simulation->levels();
+const FilledBody* ShotRun::filled(std::size_t body) const {
+  BodySimulation& simulation = *bodies_[body]->simulation;
+  return simulation.is_filled() ? &simulation.filled() : nullptr;
 }
 
-void ShotRun::fill() {
-  if (filled_) return;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    Body& body = *bodies_[b];
-    context_.stop_if_cancelled();
-    body.filled = fill_body(settings(b), body.loaded, context_);
-    body.simulation = std::make_unique<BodySimulation>(
-        shot_, make_body_model(shot_, settings(b), body.loaded, body.filled), body.filled.key, context_);
-  }
-  filled_ = true;
-}
-
-void ShotRun::advance_to(int frame) {
-  fill();
+StageKey ShotRun::surfaces_key(int frame, const SkinRequest& request) const {
+  KeyHasher key("surfaces 1");
+  const bool blurred = request.shutter > 0;
+  key.add(request.normals).add(request.shutter).add(blurred ? request.segments : 0);
   for (const auto& body : bodies_) {
-    while (body->simulation->upcoming_frame() <= frame) {
-      context_.stop_if_cancelled();
-      body->previous_positions = std::move(body->frame.state.positions);
-      body->frame = body->simulation->next_frame();
-      counts_.frames += 1;
-      counts_.frames_from_cache += body->frame.from_cache ? 1 : 0;
-      counts_.linear_iterations += body->frame.linear_iterations;
-      counts_.nonlinear_iterations += body->frame.nonlinear_iterations;
-    }
-    CHECK(body->simulation->upcoming_frame() == frame + 1);
+    key.add(body->loaded.key).add(body->simulation->filled_key()).add(body->simulation->frame_key(frame));
+    if (blurred && frame > first_simulated_frame(shot_)) key.add(body->simulation->frame_key(frame - 1));
   }
+  return key.key();
+}
+
+std::vector<CacheItem> ShotRun::items(int first, int last) const {
+  std::vector<CacheItem> items;
+  for (const auto& body : bodies_) {
+    items.push_back(cache_item(kTetrahedraStage, body->simulation->filled_key()));
+    for (int frame = first; frame <= last; ++frame)
+      items.push_back(cache_item(kSimulationStage, body->simulation->frame_key(frame)));
+  }
+  return items;
+}
+
+void ShotRun::simulate(int frame) {
+  for (const auto& body : bodies_) body->simulation->at(frame);
+}
+
+SimulationCounts ShotRun::counts() const {
+  SimulationCounts sum;
+  for (const auto& body : bodies_) {
+    const SimulationCounts counts = body->simulation->counts();
+    sum.computed += counts.computed;
+    sum.loaded += counts.loaded;
+    sum.not_needed += counts.not_needed;
+    sum.linear_iterations += counts.linear_iterations;
+    sum.nonlinear_iterations += counts.nonlinear_iterations;
+    sum.saved_seconds += counts.saved_seconds;
+  }
+  return sum;
 }
 
 std::vector<Vec3> positions_between(const std::vector<const std::vector<Vec3>*>& steps, double time) {
@@ -85,11 +93,18 @@ std::vector<Vec3> positions_between(const std::vector<const std::vector<Vec3>*>&
   return result;
 }
 
-SkinnedBody ShotRun::skin(const Body& body, const SkinRequest& request) const {
+SkinnedBody ShotRun::skin_body(std::size_t index, int frame, const SkinRequest& request) {
+  Body& body = *bodies_[index];
+  std::vector<Vec3> previous;
+  if (request.shutter > 0 && frame > first_simulated_frame(shot_))
+    previous = body.simulation->at(frame - 1).state.positions;
+  const BodyFrame& state = body.simulation->at(frame);
+  const FilledBody& filled = body.simulation->filled();
+  const ScopedStage stage(context_.times, "skin");
   std::vector<const std::vector<Vec3>*> steps;
-  if (!body.previous_positions.empty()) steps.push_back(&body.previous_positions);
-  for (const auto& step : body.frame.earlier_steps) steps.push_back(&step);
-  steps.push_back(&body.frame.state.positions);
+  if (!previous.empty()) steps.push_back(&previous);
+  for (const auto& step : state.earlier_steps) steps.push_back(&step);
+  steps.push_back(&state.state.positions);
   const bool blurred = request.shutter > 0 && steps.size() > 1;
   const int segments = blurred ? request.segments : 0;
   SkinnedBody skinned;
@@ -97,7 +112,6 @@ SkinnedBody ShotRun::skin(const Body& body, const SkinRequest& request) const {
     const double time = segments == 0 ? 0.0 : request.shutter * (static_cast<double>(k) / segments - 1);
     const std::vector<Vec3> nodes = positions_between(steps, time);
     SkinnedBody::Time& at = skinned.times.emplace_back();
-    const FilledBody& filled = body.filled;
     at.positions =
         skin_positions(body.loaded.surface.positions, filled.embedding, filled.mesh, nodes, context_.threads);
     if (request.normals)
@@ -106,10 +120,9 @@ SkinnedBody ShotRun::skin(const Body& body, const SkinRequest& request) const {
   return skinned;
 }
 
-std::vector<SkinnedBody> ShotRun::skin(const SkinRequest& request) {
-  const ScopedStage stage(context_.times, "skin");
+std::vector<SkinnedBody> ShotRun::skin(int frame, const SkinRequest& request) {
   std::vector<SkinnedBody> skinned;
-  for (const auto& body : bodies_) skinned.push_back(skin(*body, request));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) skinned.push_back(skin_body(b, frame, request));
   return skinned;
 }
 

@@ -1,4 +1,4 @@
-/// One shot on its way through the stages: bodies filled once, then frame after frame in order.
+/// One shot on its way through the stages: bodies loaded at once, filled and simulated when a frame asks for it.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,7 @@
 
 #include "tool/shot/shot.h"
 #include "tool/stages/body_stage.h"
+#include "tool/stages/cache_use.h"
 #include "tool/stages/run_context.h"
 #include "tool/stages/simulate_stage.h"
 
@@ -28,15 +29,11 @@ struct SkinRequest {
   int segments = 1;    ///< straight pieces while the shutter is open
 };
 
-/// Counts for the report.
-struct SimulationCounts {
-  int frames = 0, frames_from_cache = 0;
-  std::int64_t linear_iterations = 0, nonlinear_iterations = 0;
-};
-
+/// Reading keys and loaded bodies is thread-safe; all else belongs to one thread at a time.
 class ShotRun {
  public:
-  /// Loads the bodies; nothing is filled or simulated yet. shot and context are kept by reference.
+  /// Loads the bodies, resolves their selections, and finds all keys; nothing is filled or simulated yet. shot and
+  /// context are kept by reference.
   ShotRun(const Shot& shot, const RunContext& context);
   ~ShotRun();
 
@@ -45,28 +42,29 @@ class ShotRun {
   std::size_t body_count() const { return bodies_.size(); }
   const BodySettings& settings(std::size_t body) const { return shot_.bodies[body]; }
   const LoadedBody& loaded(std::size_t body) const;
-  /// Fills the bodies (or reads them from the cache) and sets up their simulations; the first call does the work.
-  void fill();
-  const FilledBody& filled(std::size_t body) const;
-  /// Levels of the body's multigrid hierarchy; empty if no frame had to be simulated.
-  std::vector<LevelInfo> levels(std::size_t body) const;
+  const BodySimulation& simulation(std::size_t body) const;
+  /// The tetrahedra of a body; null if no frame asked for them.
+  const FilledBody* filled(std::size_t body) const;
 
-  /// Runs all bodies up to `frame` (from the cache where it holds them). Frames must be asked for in rising order, from
-  /// shot.frames[0] on.
-  void advance_to(int frame);
-  /// The bodies' surfaces at the frame that advance_to reached.
-  std::vector<SkinnedBody> skin(const SkinRequest& request);
-  const SimulationCounts& counts() const { return counts_; }
+  /// Everything that the bodies' surfaces at a frame depend on.
+  StageKey surfaces_key(int frame, const SkinRequest& request) const;
+  /// What the cache keeps for the bodies at these frames, tetrahedra included.
+  std::vector<CacheItem> items(int first, int last) const;
+
+  /// Computes the frame of all bodies, or reads it.
+  void simulate(int frame);
+  /// The bodies' surfaces at a frame.
+  std::vector<SkinnedBody> skin(int frame, const SkinRequest& request);
+  SkinnedBody skin_body(std::size_t body, int frame, const SkinRequest& request);
+  /// Summed over the bodies.
+  SimulationCounts counts() const;
 
  private:
   struct Body;
-  SkinnedBody skin(const Body& body, const SkinRequest& request) const;
 
   const Shot& shot_;
   const RunContext& context_;
   std::vector<std::unique_ptr<Body>> bodies_;
-  bool filled_ = false;
-  SimulationCounts counts_;
 };
 
 /// Node positions at a time in [-1, 0] frames before a frame, on the straight lines between sub-steps. `steps`: node

@@ -4,7 +4,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give other frames.
-constexpr const char* kSimulationVersion = "simulation 1";
+constexpr const char* kSimulationVersion = "simulation 2";
 
 void add(KeyHasher& key, const Transform& t) {
   key.add(t.translate).add(t.rotate).add(t.scale);
@@ -13,29 +13,25 @@ void add(KeyHasher& key, const Transform& t) {
 }
 
 /// An inactive constraint has no value: its keys may change freely.
-void add_constraints(KeyHasher& key, const BodyModel& model, double frame) {
-  for (const Pin& pin : model.pins) {
+void add_constraints(KeyHasher& key, const BodyConstraints& constraints, double frame) {
+  for (const Pin& pin : constraints.pins) {
     const bool active = is_active(pin.active, frame);
     key.add(active);
     if (active) add(key, pin.track.at(frame));
   }
-  for (const Pull& pull : model.pulls) {
+  for (const Pull& pull : constraints.pulls) {
     const double stiffness = is_active(pull.active, frame) ? pull.stiffness.at(frame) : 0.0;
     key.add(stiffness);
     if (stiffness > 0) add(key, pull.track.at(frame));
   }
 }
 
-void add_materials(KeyHasher& key, const std::vector<ElementMaterial>& materials) {
-  for (const ElementMaterial& m : materials)
-    key.add(m.youngs_modulus).add(m.poisson_ratio).add(m.density).add(m.damping_mass).add(m.damping_stiffness);
-}
-
 }  // namespace
 
-StageKey simulation_base_key(const Shot& shot, const BodyModel& model, const StageKey& filled_key) {
+StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
+                             const StageKey& materials) {
   KeyHasher key(kSimulationVersion);
-  key.add(filled_key).add(model.gravity).add(shot.settings.mode);
+  key.add(filled).add(materials).add(shot.gravity).add(shot.settings.mode);
   const SolverParams& solver = shot.solver;
   key.add(solver.rotation).add(solver.dilatation).add(solver.max_iterations);
   if (shot.settings.mode == SimulationMode::Dynamic) {
@@ -46,24 +42,40 @@ StageKey simulation_base_key(const Shot& shot, const BodyModel& model, const Sta
   if (shot.settings.mode == SimulationMode::Static || shot.settings.start == StartState::Equilibrium)
     key.add(solver.force_tolerance).add(solver.max_newton_iterations);
   key.add(solver.multigrid.galerkin);
-  add_materials(key, model.materials);
-  for (const Pin& pin : model.pins) key.add(pin.points);
-  for (const Pull& pull : model.pulls) key.add(pull.points).add(pull.weights).add(pull.max_force);
+  for (const Pin& pin : constraints.pins) key.add(pin.points);
+  for (const Pull& pull : constraints.pulls) key.add(pull.points).add(pull.weights).add(pull.max_force);
   return key.key();
 }
 
-StageKey frame_key(const Shot& shot, const BodyModel& model, const StageKey& previous, int frame, bool is_start) {
+StageKey frame_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& previous, int frame,
+                   bool is_start) {
   KeyHasher key("frame");
   key.add(previous);
   if (is_start && shot.settings.mode == SimulationMode::Dynamic && shot.settings.start == StartState::Rest)
     return key.key();
   if (is_start || shot.settings.mode == SimulationMode::Static) {
-    add_constraints(key, model, frame);
+    add_constraints(key, constraints, frame);
     return key.key();
   }
   for (int s = 1; s <= shot.solver.substeps; ++s)
-    add_constraints(key, model, frame - 1 + static_cast<double>(s) / shot.solver.substeps);
+    add_constraints(key, constraints, frame - 1 + static_cast<double>(s) / shot.solver.substeps);
   return key.key();
+}
+
+int first_simulated_frame(const Shot& shot) {
+  return shot.settings.first_frame - shot.settings.preroll;
+}
+
+std::vector<StageKey> simulation_keys(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
+                                      const StageKey& materials) {
+  const StageKey base = simulation_base_key(shot, constraints, filled, materials);
+  const bool from_rest = shot.settings.mode == SimulationMode::Static && shot.settings.independent;
+  const int start = first_simulated_frame(shot);
+  std::vector<StageKey> keys;
+  for (int frame = start; frame <= shot.settings.last_frame; ++frame)
+    keys.push_back(
+        frame_key(shot, constraints, frame == start || from_rest ? base : keys.back(), frame, frame == start));
+  return keys;
 }
 
 }  // namespace softreel

@@ -1,18 +1,30 @@
 /// The keys of simulated frames: a chain, so that an edit invalidates nothing before the first frame it can affect.
 #pragma once
 
-#include "core/dynamics/simulator.h"
+#include <vector>
+
 #include "tool/shot/shot.h"
+#include "tool/stages/body_stage.h"
 #include "tool/stages/key.h"
 
 namespace softreel {
 
-/// Everything that shapes every frame: tetrahedra, material, solver, which points the constraints hold.
-StageKey simulation_base_key(const Shot& shot, const BodyModel& model, const StageKey& filled_key);
+/// Everything that shapes every frame: tetrahedra, materials (add_materials), solver, which points the constraints
+/// hold.
+StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
+                             const StageKey& materials);
 
 /// The previous frame's key with the *values* of the constraints at the sub-steps of this frame: an edit that changes
 /// no value changes no key. `is_start`: the frame is where the simulation starts, from the state that shot.start asks
 /// for.
-StageKey frame_key(const Shot& shot, const BodyModel& model, const StageKey& previous, int frame, bool is_start);
+StageKey frame_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& previous, int frame,
+                   bool is_start);
+
+/// Where the simulation starts: the first frame less the preroll.
+int first_simulated_frame(const Shot& shot);
+
+/// Keys of all frames from first_simulated_frame to the last one, without simulating or filling anything.
+std::vector<StageKey> simulation_keys(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
+                                      const StageKey& materials);
 
 }  // namespace softreel

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "core/base/check.h"
 #include "tool/stages/bytes.h"
 #include "tool/stages/simulate_key.h"
+#include "tool/stages/stage_names.h"
 
 namespace softreel {
 namespace {
 
-std::vector<std::uint8_t> pack(const BodyFrame& frame) {
+Bytes pack(const BodyFrame& frame) {
   ByteWriter out;
   out.put_array(frame.state.positions);
   out.put_array(frame.state.velocities);
@@ -26,7 +28,6 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
   frame.state.rotations = in.get_array<Quaternion>();
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
-  frame.from_cache = true;
   return frame;
 }
 
@@ -35,21 +36,38 @@ void count(BodyFrame& frame, const StepReport& report) {
   frame.nonlinear_iterations += report.nonlinear_iterations;
 }
 
+StageKey materials_key(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded) {
+  KeyHasher key("materials");
+  add_materials(key, shot, settings, loaded.surface);
+  return key.key();
+}
+
 }  // namespace
 
-BodySimulation::BodySimulation(const Shot& shot, BodyModel model, const StageKey& filled_key, const RunContext& context)
+BodySimulation::BodySimulation(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded,
+                               BodyConstraints constraints, const RunContext& context)
     : shot_(shot),
-      model_(std::move(model)),
+      settings_(settings),
+      loaded_(loaded),
       context_(context),
-      base_key_(simulation_base_key(shot, model_, filled_key)),
-      previous_key_(base_key_),
-      state_(rest_state()),
-      upcoming_(first_simulated_frame()) {}
+      constraints_(std::move(constraints)),
+      filled_key_(softreel::filled_key(settings, loaded)),
+      frame_keys_(simulation_keys(shot, constraints_, filled_key_, materials_key(shot, settings, loaded))),
+      touched_(frame_keys_.size(), false),
+      frame_number_(first_simulated_frame(shot) - 1) {}
 
 BodySimulation::~BodySimulation() = default;
 
-const BodyModel& BodySimulation::model() const {
-  return model_;
+const StageKey& BodySimulation::frame_key(int frame) const {
+  return frame_keys_.at(static_cast<std::size_t>(frame - first_simulated_frame(shot_)));
+}
+
+const FilledBody& BodySimulation::filled() {
+  if (!filled_) {
+    context_.stop_if_cancelled();
+    filled_ = std::make_unique<FilledBody>(fill_body(settings_, loaded_, filled_key_, context_));
+  }
+  return *filled_;
 }
 
 std::vector<LevelInfo> BodySimulation::levels() const {
@@ -57,24 +75,27 @@ std::vector<LevelInfo> BodySimulation::levels() const {
 }
 
 SimulationState BodySimulation::rest_state() const {
-  return {model_.mesh.nodes, std::vector<Vec3>(model_.mesh.nodes.size(), Vec3::Zero()),
-          std::vector<Quaternion>(model_.mesh.tets.size(), Quaternion::Identity())};
+  const TetMesh& mesh = filled_->mesh;
+  return {mesh.nodes, std::vector<Vec3>(mesh.nodes.size(), Vec3::Zero()),
+          std::vector<Quaternion>(mesh.tets.size(), Quaternion::Identity())};
 }
 
+/// The simulator in the state of frame_.
 Simulator& BodySimulation::simulator() {
   if (!simulator_) {
     const ScopedStage stage(context_.times, "simulate/set-up");
-    simulator_ = std::make_unique<Simulator>(model_, shot_.solver, context_.threads, context_.log, context_.times);
+    simulator_ = std::make_unique<Simulator>(make_body_model(shot_, settings_, loaded_, filled(), constraints_),
+                                             shot_.solver, context_.threads, context_.log, context_.times);
   }
-  if (!simulator_holds_state_) simulator_->set_state(state_);
-  simulator_holds_state_ = true;
+  if (!simulator_holds_frame_) simulator_->set_state(frame_.state);
+  simulator_holds_frame_ = true;
   return *simulator_;
 }
 
 void BodySimulation::require_solved(const StepReport& report, int frame) const {
   if (report.ok()) return;
   const char* what = report.solve.status == SolveStatus::MaxIterations ? "did not converge" : "broke down";
-  const bool is_static = shot_.settings.mode == SimulationMode::Static || frame == first_simulated_frame();
+  const bool is_static = shot_.settings.mode == SimulationMode::Static || frame == first_simulated_frame(shot_);
   const char* advice = is_static
                            ? "Accepted: a shape that pins and pulls can hold. Move the constraint in smaller steps, "
                              "stiffen the material, lower the gravity, or start at rest in a dynamic shot"
@@ -83,71 +104,109 @@ void BodySimulation::require_solved(const StepReport& report, int frame) const {
   throw work_error(
       fmt::format("{}: frame {}, body \"{}\": the {} {} after {} iterations (relative residual {:.3g}){}{}.\n"
                   "  {}; the frames before are kept.",
-                  shot_.path, frame, model_.name, is_static ? "equilibrium" : "step", what, report.solve.iterations,
+                  shot_.path, frame, settings_.name, is_static ? "equilibrium" : "step", what, report.solve.iterations,
                   report.solve.residual, report.culprit.empty() ? "" : "; worst at ", report.culprit, advice));
 }
 
-int BodySimulation::first_simulated_frame() const {
-  return shot_.settings.first_frame - shot_.settings.preroll;
+bool BodySimulation::starts_from_rest(int frame) const {
+  const bool independent = shot_.settings.mode == SimulationMode::Static && shot_.settings.independent;
+  return independent || frame == first_simulated_frame(shot_);
 }
 
-StageKey BodySimulation::next_key(int frame) const {
-  const int start = first_simulated_frame();
-  const bool from_rest = shot_.settings.mode == SimulationMode::Static && shot_.settings.independent;
-  return frame_key(shot_, model_, frame == start || from_rest ? base_key_ : previous_key_, frame, frame == start);
+bool BodySimulation::load(int frame) {
+  const auto stored = context_.cache.load(kSimulationStage, frame_key(frame));
+  if (!stored) return false;
+  frame_ = unpack(stored->bytes);
+  frame_number_ = frame;
+  simulator_holds_frame_ = false;
+  touched_[static_cast<std::size_t>(frame - first_simulated_frame(shot_))] = true;
+  counts_.loaded += 1;
+  counts_.saved_seconds += stored->seconds;
+  return true;
 }
 
-BodyFrame BodySimulation::next_frame() {
-  const int frame = upcoming_;
-  const StageKey key = next_key(frame);
-  BodyFrame result;
-  if (const auto bytes = context_.cache.load("simulation", key)) {
-    result = unpack(*bytes);
-    simulator_holds_state_ = false;
+/// From frame_, which is the one before, or from rest.
+void BodySimulation::produce(int frame) {
+  BodyFrame made;
+  const auto simulate = [&] {
+    made = simulated(frame);
+    return pack(made);
+  };
+  const Cache::Produced produced = context_.cache.produce(
+      kSimulationStage, frame_key(frame), [&] { context_.stop_if_cancelled(); }, simulate);
+  if (produced.from_cache) {
+    made = unpack(produced.bytes);
+    simulator_holds_frame_ = false;
+    counts_.loaded += 1;
+    counts_.saved_seconds += produced.seconds;
   } else {
-    result = simulated(frame);
-    context_.cache.store("simulation", key, pack(result));
+    counts_.computed += 1;
+    counts_.linear_iterations += made.linear_iterations;
+    counts_.nonlinear_iterations += made.nonlinear_iterations;
   }
-  result.key = key;
-  state_ = result.state;
-  previous_key_ = key;
-  ++upcoming_;
-  return result;
+  frame_ = std::move(made);
+  frame_number_ = frame;
+  touched_[static_cast<std::size_t>(frame - first_simulated_frame(shot_))] = true;
 }
 
-BodyFrame BodySimulation::start_frame() {
-  BodyFrame result;
-  result.state = state_;
-  return result;
+const BodyFrame& BodySimulation::at(int frame) {
+  if (frame_number_ == frame) return frame_;
+  int from = frame;  // the nearest frame at or before this one that is at hand
+  while (!(from == frame_number_ || load(from) || starts_from_rest(from))) --from;
+  if (from != frame_number_) produce(from);
+  while (frame_number_ < frame) produce(frame_number_ + 1);
+  return frame_;
 }
 
 BodyFrame BodySimulation::simulated(int frame) {
+  context_.stop_if_cancelled();
+  filled();
   const ShotSettings& settings = shot_.settings;
-  const bool is_start = frame == first_simulated_frame();
   const bool is_static = settings.mode == SimulationMode::Static;
-  if (is_start && !is_static && settings.start == StartState::Rest) return start_frame();
+  if (starts_from_rest(frame)) {
+    frame_.state = rest_state();
+    simulator_holds_frame_ = false;
+  }
   BodyFrame result;
+  const bool is_start = frame == first_simulated_frame(shot_);
+  if (is_start && !is_static && settings.start == StartState::Rest) {
+    result.state = frame_.state;
+    return result;
+  }
   if (is_static || is_start) {
-    if (is_static && settings.independent) {
-      state_ = rest_state();
-      simulator_holds_state_ = false;
-    }
-    const StepReport report = simulator().find_equilibrium(frame);
+    Simulator& body = simulator();
+    simulator_holds_frame_ = false;  // until all of the frame is done
+    const StepReport report = body.find_equilibrium(frame);
     require_solved(report, frame);
     count(result, report);
   } else {
+    Simulator& body = simulator();
+    simulator_holds_frame_ = false;
     const int substeps = shot_.solver.substeps;
     const double seconds = 1.0 / (settings.fps * substeps);
     for (int s = 1; s <= substeps; ++s) {
       context_.stop_if_cancelled();
-      const StepReport report = simulator().step(frame - 1 + static_cast<double>(s) / substeps, seconds);
+      const StepReport report = body.step(frame - 1 + static_cast<double>(s) / substeps, seconds);
       require_solved(report, frame);
       count(result, report);
-      if (s < substeps) result.earlier_steps.push_back(simulator_->state().positions);
+      if (s < substeps) result.earlier_steps.push_back(body.state().positions);
     }
   }
   result.state = simulator_->state();
+  simulator_holds_frame_ = true;
   return result;
+}
+
+SimulationCounts BodySimulation::counts() const {
+  SimulationCounts counts = counts_;
+  for (std::size_t i = 0; i < frame_keys_.size(); ++i) {
+    if (touched_[i]) continue;
+    const auto seconds = context_.cache.seconds(kSimulationStage, frame_keys_[i]);
+    if (!seconds) continue;
+    counts.not_needed += 1;
+    counts.saved_seconds += *seconds;
+  }
+  return counts;
 }
 
 }  // namespace softreel

@@ -1,4 +1,4 @@
-/// Bodies through time, frame by frame; frames that the cache holds are read, not simulated.
+/// One body through time: any frame, from the cache where it has it, simulated from the nearest stored one otherwise.
 #pragma once
 
 #include <memory>
@@ -6,6 +6,7 @@
 
 #include "core/dynamics/simulator.h"
 #include "tool/shot/shot.h"
+#include "tool/stages/body_stage.h"
 #include "tool/stages/key.h"
 #include "tool/stages/run_context.h"
 
@@ -15,45 +16,63 @@ namespace softreel {
 struct BodyFrame {
   SimulationState state;                         ///< at the frame
   std::vector<std::vector<Vec3>> earlier_steps;  ///< node positions after each sub-step of the frame but the last
-  StageKey key;
-  bool from_cache = false;
   int linear_iterations = 0, nonlinear_iterations = 0;  ///< summed over the sub-steps; 0 if from the cache
 };
 
-/// Runs one body from its start to any later frame, in order.
+/// What a run did and what it need not do, of one body or of several.
+struct SimulationCounts {
+  int computed = 0, loaded = 0, not_needed = 0;
+  std::int64_t linear_iterations = 0, nonlinear_iterations = 0;
+  double saved_seconds = 0;  ///< what the frames that were not computed took when they were
+};
+
+/// Nothing is filled or simulated before it is asked for. Not thread-safe.
 class BodySimulation {
  public:
-  /// The model's key must cover everything that shaped it but its constraints' values over time.
-  BodySimulation(const Shot& shot, BodyModel model, const StageKey& filled_key, const RunContext& context);
+  /// All are kept by reference but the constraints.
+  BodySimulation(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded, BodyConstraints constraints,
+                 const RunContext& context);
   ~BodySimulation();
 
-  /// The next frame, from first_frame - preroll on. Throws work_error naming frame, body and element or constraint if a
-  /// step cannot be solved.
-  BodyFrame next_frame();
-  /// The frame that next_frame will return.
-  int upcoming_frame() const { return upcoming_; }
+  const StageKey& filled_key() const { return filled_key_; }
+  /// Of a frame between first_simulated_frame and the last one of the shot.
+  const StageKey& frame_key(int frame) const;
 
-  const BodyModel& model() const;
-  /// Levels of the multigrid hierarchy; empty while all frames came from the cache.
+  /// The tetrahedra; the first call reads or makes them.
+  const FilledBody& filled();
+  bool is_filled() const { return filled_ != nullptr; }
+
+  /// The body at a frame. Throws work_error naming frame, body and element or constraint if a step cannot be solved.
+  const BodyFrame& at(int frame);
+
+  /// Frames that were neither computed nor loaded count as not needed if they are stored.
+  SimulationCounts counts() const;
+  /// Levels of the multigrid hierarchy; empty while no frame was computed.
   std::vector<LevelInfo> levels() const;
 
  private:
   Simulator& simulator();
   SimulationState rest_state() const;
-  BodyFrame start_frame();
+  bool load(int frame);
+  void produce(int frame);
   BodyFrame simulated(int frame);
-  int first_simulated_frame() const;
-  StageKey next_key(int frame) const;
+  bool starts_from_rest(int frame) const;
   void require_solved(const StepReport& report, int frame) const;
 
   const Shot& shot_;
-  BodyModel model_;
+  const BodySettings& settings_;
+  const LoadedBody& loaded_;
   const RunContext& context_;
-  StageKey base_key_, previous_key_;
-  SimulationState state_;  ///< at the frame before the upcoming one
-  bool simulator_holds_state_ = false;
-  int upcoming_;
+  BodyConstraints constraints_;
+  StageKey filled_key_;
+  std::vector<StageKey> frame_keys_;
+  std::vector<bool> touched_;  ///< per frame: computed or loaded by this run
+  std::unique_ptr<FilledBody> filled_;
   std::unique_ptr<Simulator> simulator_;  ///< made when the first frame has to be simulated
+  bool simulator_holds_frame_ = false;
+  BodyFrame frame_;
+  int frame_number_;  ///< of frame_; before the first simulated frame while there is none
+  SimulationCounts counts_;
 };
 
 }  // namespace softreel

@@ -65,7 +65,7 @@ const Mistake kMistakes[] = {
     {"FramesOutside", "softreel render {0}/shot.toml --frames 3-9", 2, {"--frames", "1-4"}},
     {"FramesNoNumbers", "softreel render {0}/shot.toml --frames all", 2, {"--frames", "all"}},
     {"OutputIsAFile", "softreel render {0}/shot.toml --output {0}/sphere.obj/out", 1, {"sphere.obj", "--output"}},
-    {"NoDiskSpace", "ulimit -f 8; softreel render {0}/shot.toml --output {0}/out", 1, {"cannot be written"}},
+    {"NoDiskSpace", "ulimit -f 2; softreel render {0}/shot.toml --output {0}/out", 1, {"cannot be written"}},
     {"UnknownCommand", "softreel rendr {0}/shot.toml", 2, {"rendr", "Did you mean render?"}},
     {"UnknownOption", "softreel render {0}/shot.toml --frame 3", 2, {"--frame"}},
     {"NoCommand", "softreel", 2, {"subcommand"}},

@@ -22,19 +22,24 @@ json render(const std::string& folder, const std::string& output, const std::str
   return json::parse(outcome.out);
 }
 
-/// Every file of two folders has the same bytes, but for the reports, which hold times, and the resolved shot, which
-/// holds paths and threads.
+/// The payload of a stored result: its first line holds how long making it took.
+std::string comparable(const std::string& folder, const std::string& name) {
+  const std::string text = read_text(folder + "/" + name);
+  return text.starts_with("softreel cache") ? text.substr(text.find('\n')) : text;
+}
+
+/// Every file of two folders has the same content, but for what holds times, paths and threads.
 void expect_equal_folders(const std::string& a, const std::string& b) {
   const auto kept = [](std::vector<std::string> names) {
     std::erase_if(names, [](const std::string& name) {
-      return name.ends_with(".report.json") || name.ends_with(".resolved.toml");
+      return name.ends_with(".report.json") || name.ends_with(".resolved.toml") || name.ends_with(".manifest.json") ||
+             name.ends_with(".manifest.lock") || name.find(".cache/2/uses") == 0 || name == ".cache/2/lock";
     });
     return names;
   };
   const auto names = kept(files_under(a));
   ASSERT_EQ(names, kept(files_under(b)));
-  for (const std::string& name : names)
-    EXPECT_TRUE(read_text(a + "/" + name) == read_text(b + "/" + name)) << name << " differs";
+  for (const std::string& name : names) EXPECT_TRUE(comparable(a, name) == comparable(b, name)) << name << " differs";
 }
 
 TEST(Render, MakesEveryFrameAndSaysSo) {
@@ -43,36 +48,7 @@ TEST(Render, MakesEveryFrameAndSaysSo) {
   for (int frame = 1; frame <= 4; ++frame) EXPECT_TRUE(exists(fmt::format("{}/out/ball.{:04}.png", folder, frame)));
   EXPECT_TRUE(exists(folder + "/out/ball.resolved.toml"));
   EXPECT_EQ(report["pictures"]["traced"], 4);
-  EXPECT_EQ(report["simulation"]["frames"], 4);
-}
-
-TEST(Render, ASecondRunMakesNothingAgain) {
-  const std::string folder = shot_folder("again");
-  render(folder, folder + "/out");
-  const json report = render(folder, folder + "/out");
-  EXPECT_EQ(report["pictures"]["kept"], 4);
-  EXPECT_EQ(report["simulation"]["frames_from_cache"], 4);
-}
-
-TEST(Render, AnotherLightTracesButDoesNotSimulate) {
-  const std::string folder = shot_folder("light");
-  render(folder, folder + "/out");
-  const json report = render(folder, folder + "/out", "--set 'environment.zenith=[0.9,0.2,0.1]'");
-  EXPECT_EQ(report["pictures"]["traced"], 4);
-  EXPECT_EQ(report["simulation"]["frames_from_cache"], 4);
-  EXPECT_TRUE(report["bodies"][0]["tets_from_cache"]);
-}
-
-TEST(Render, AnEditedKeyResimulatesFromTheFirstFrameItCanAffect) {
-  const std::string folder = shot_folder("key");
-  render(folder, folder + "/out");
-  const json report =
-      render(folder, folder + "/out",
-             "--set 'body.ball.pull[0].keys=[{frame=1},{frame=3,translate=[0,0,0]},{frame=4,translate=[0.2,0.2,0]}]' "
-             "--set 'body.ball.pull[0].active=[4,4]'",
-             "simulate");
-  // Frame 1 is the rest state; frames 2 and 3 lost the pull.
-  EXPECT_EQ(report["simulation"]["frames_from_cache"], 1);
+  EXPECT_EQ(report["simulation"]["computed"], 4);
 }
 
 TEST(Render, HasTheSameBitsTwiceAndWithAnyNumberOfThreads) {
@@ -97,8 +73,8 @@ TEST(Render, ADamagedPictureOrCacheFileIsSaidAndMadeAgain) {
   const std::string picture = folder + "/out/ball.0002.png", good = read_text(picture);
   write_text(picture, good.substr(0, good.size() / 2));
   std::string cached;
-  for (const std::string& name : files_under(folder + "/out/.cache/simulation"))
-    cached = folder + "/out/.cache/simulation/" + name;
+  for (const std::string& name : files_under(folder + "/out/.cache/2/simulation"))
+    cached = folder + "/out/.cache/2/simulation/" + name;
   const std::string state = read_text(cached);
   std::string flipped = state;
   flipped[flipped.size() / 2] ^= 1;
@@ -108,7 +84,7 @@ TEST(Render, ADamagedPictureOrCacheFileIsSaidAndMadeAgain) {
   EXPECT_NE(outcome.err.find(picture + ": damaged"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("damaged cache file"), std::string::npos) << outcome.err;
   EXPECT_EQ(read_text(picture), good);
-  EXPECT_TRUE(read_text(cached) == state);
+  EXPECT_EQ(read_text(cached).substr(state.find('\n')), state.substr(state.find('\n')));
 }
 
 TEST(Render, AnInterruptedRunKeepsItsFramesAndTheNextOneEndsEqual) {
@@ -131,8 +107,6 @@ TEST(Render, AnInterruptedRunKeepsItsFramesAndTheNextOneEndsEqual) {
       EXPECT_TRUE(read_text(output + name) == read_text(folder + "/whole" + name)) << name;
     }
     render(folder, output, more);
-    for (const std::string& name : files_under(output))  // what the killed process was writing
-      if (name.ends_with(".part")) std::filesystem::remove(output + "/" + name);
     expect_equal_folders(folder + "/whole", output);
   }
 }
@@ -160,8 +134,7 @@ TEST(Render, EncodesAMovieOfAllFrames) {
 TEST(Render, PrerollIsSimulatedButNotRendered) {
   const std::string folder = shot_folder("preroll");
   const json report = render(folder, folder + "/out", "--set shot.preroll=5");
-  EXPECT_EQ(report["simulation"]["frames"], 9);
-  EXPECT_EQ(files_under(folder + "/out").size(), 4U + 9U + 1U + 3U) << "pictures, frames, tetrahedra, reports";
+  EXPECT_EQ(report["simulation"]["computed"], 9);
   // Five frames under its weight have moved the body before the first picture.
   render(folder, folder + "/without");
   EXPECT_NE(read_text(folder + "/out/ball.0001.png"), read_text(folder + "/without/ball.0001.png"));
@@ -201,7 +174,7 @@ TEST(Render, StaticFramesThatAreEqualAreTracedOnce) {
                              "--set shot.mode=static --set 'body.ball.pull[0].keys=[{frame=1,translate=[0.1,0,0]}]' "
                              "--set shot.independent=true");
   EXPECT_EQ(report["pictures"]["traced"], 1);
-  EXPECT_EQ(report["pictures"]["copied"], 3);
+  EXPECT_EQ(report["pictures"]["linked"], 3);
 }
 
 }  // namespace

@@ -244,6 +244,7 @@ exposure = 0.5
 png = false
 exr = true
 movie = false
+cache_limit = 7
 
 [golden]
 frames = [-3, 10, 48]

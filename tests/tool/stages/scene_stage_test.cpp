@@ -71,27 +71,5 @@ TEST(PositionsBetween, LieOnTheLinesBetweenSubSteps) {
   EXPECT_EQ(positions_between({&c}, -0.3)[0], Vec3(2, 6, 0)) << "without an earlier state nothing moves";
 }
 
-TEST(PictureKey, KnowsWhatChangesPixelsAndNotTheFrame) {
-  Scene scene;
-  scene.meshes.push_back({"a", {{0, 1, 2}}, {{{Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0)}, {}}}, {}});
-  const RenderParams params;
-  const StageKey key = picture_key(scene, params);
-  Scene moved = scene;
-  moved.meshes[0].times[0].positions[0].x() = 1e-7f;
-  EXPECT_NE(picture_key(moved, params), key);
-  Scene renamed = scene;
-  renamed.meshes[0].name = "b";
-  EXPECT_EQ(picture_key(renamed, params), key);
-  Scene refocused = scene;
-  refocused.camera.focus_distance = 7;
-  EXPECT_EQ(picture_key(refocused, params), key) << "a pinhole has no focus";
-  Scene brighter = scene;
-  brighter.environment.strength = 2;
-  EXPECT_NE(picture_key(brighter, params), key);
-  RenderParams finer = params;
-  finer.samples = 17;
-  EXPECT_NE(picture_key(scene, finer), key);
-}
-
 }  // namespace
 }  // namespace softreel

@@ -15,50 +15,36 @@ Shot simple_shot() {
   return shot;
 }
 
-/// One tetrahedron under one pin that moves from frame 48 to 60.
-BodyModel simple_model() {
-  BodyModel model;
-  model.mesh.tets = {{0, 1, 2, 3}};
-  model.materials = {ElementMaterial{}};
+/// One pin that moves from frame 48 to 60.
+BodyConstraints simple_constraints() {
   Pin pin;
   pin.points = {0};
   pin.track.keys = {{1, {}, Ease::Smooth}, {48, {}, Ease::Smooth}, {60, {Vec3(0, 1, 0)}, Ease::Smooth}};
-  model.pins = {pin};
-  return model;
-}
-
-/// Keys of all frames.
-std::vector<StageKey> chain(const Shot& shot, const BodyModel& model) {
-  std::vector<StageKey> keys;
-  StageKey previous = simulation_base_key(shot, model, "filled");
-  for (int frame = shot.settings.first_frame; frame <= shot.settings.last_frame; ++frame) {
-    previous = frame_key(shot, model, previous, frame, frame == shot.settings.first_frame);
-    keys.push_back(previous);
-  }
-  return keys;
+  return {{pin}, {}};
 }
 
 /// First frame whose key an edit changes; 0 if none.
-int first_changed(const std::function<void(Shot&, BodyModel&)>& edit) {
+int first_changed(const std::function<void(Shot&, BodyConstraints&)>& edit) {
   Shot shot = simple_shot();
-  BodyModel model = simple_model();
-  const std::vector<StageKey> before = chain(shot, model);
-  edit(shot, model);
-  const std::vector<StageKey> after = chain(shot, model);
+  BodyConstraints constraints = simple_constraints();
+  const std::vector<StageKey> before = simulation_keys(shot, constraints, "filled", "materials");
+  edit(shot, constraints);
+  const std::vector<StageKey> after = simulation_keys(shot, constraints, "filled", "materials");
   for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i)
     if (before[i] != after[i]) return static_cast<int>(i) + 1;
   return 0;
 }
 
 TEST(FrameKey, AnEditedKeyChangesNoFrameBeforeItsSegment) {
-  EXPECT_EQ(first_changed([](Shot&, BodyModel& m) { m.pins[0].track.keys[2].value.translate.x() = 1; }), 49);
+  EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].track.keys[2].value.translate.x() = 1; }), 49);
 }
 
 TEST(FrameKey, AnEditThatChangesNoValueChangesNothing) {
-  EXPECT_EQ(first_changed([](Shot&, BodyModel& m) { m.pins[0].track.keys.erase(m.pins[0].track.keys.begin()); }), 0);
-  EXPECT_EQ(first_changed([](Shot&, BodyModel& m) { m.pins[0].track.keys[0].ease = Ease::Constant; }), 0);
-  EXPECT_EQ(first_changed([](Shot&, BodyModel& m) { m.pins[0].name = "another"; }), 0);
-  EXPECT_EQ(first_changed([](Shot&, BodyModel& m) {
+  EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].track.keys.erase(m.pins[0].track.keys.begin()); }),
+            0);
+  EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].track.keys[0].ease = Ease::Constant; }), 0);
+  EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].name = "another"; }), 0);
+  EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) {
               for (auto& key : m.pins[0].track.keys) key.value.pivot = Vec3(1, 2, 3);
             }),
             0)
@@ -66,15 +52,15 @@ TEST(FrameKey, AnEditThatChangesNoValueChangesNothing) {
 }
 
 TEST(FrameKey, WhatIsSwitchedOffHasNoValue) {
-  EXPECT_EQ(first_changed([](Shot&, BodyModel& m) { m.pins[0].active = {{1, 30}}; }), 31);
+  EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].active = {{1, 30}}; }), 31);
 }
 
 TEST(FrameKey, ALongerShotKeepsItsFrames) {
-  EXPECT_EQ(first_changed([](Shot& s, BodyModel&) { s.settings.last_frame = 90; }), 0);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.settings.last_frame = 90; }), 0);
 }
 
 TEST(FrameKey, LooksChangeNothing) {
-  EXPECT_EQ(first_changed([](Shot& s, BodyModel&) {
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) {
               s.render.params.samples = 512;
               s.output.exr = true;
               s.camera.azimuth_deg = 0;
@@ -85,13 +71,53 @@ TEST(FrameKey, LooksChangeNothing) {
             0);
 }
 
+TEST(FrameKey, IndependentFramesKnowNothingOfEachOther) {
+  Shot shot = simple_shot();
+  shot.settings.mode = SimulationMode::Static;
+  shot.settings.independent = true;
+  const auto keys = simulation_keys(shot, simple_constraints(), "filled", "materials");
+  EXPECT_EQ(keys[10], keys[40]) << "the pin is where it was";
+  EXPECT_NE(keys[10], keys[55]);
+  shot.settings.independent = false;
+  const auto chained = simulation_keys(shot, simple_constraints(), "filled", "materials");
+  EXPECT_NE(chained[10], chained[40]) << "the frame starts from the one before";
+}
+
+TEST(FrameKey, MaterialsOfRegionsCountWhereverTheirNumbersChange) {
+  SurfaceMesh surface;
+  surface.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  surface.triangles = {{0, 1, 2}};
+  Shot shot;
+  shot.materials["flesh"];
+  BodySettings body;
+  body.material = "flesh";
+  body.regions.resize(1);
+  body.regions[0].select.terms = {{SelectSphere{Vec3::Zero(), 0.5}, SelectionUnit::Meter}};
+  body.regions[0].stiffness = 4.0;
+  const auto key = [&] {
+    KeyHasher hasher("materials");
+    add_materials(hasher, shot, body, surface);
+    return hasher.key();
+  };
+  const StageKey before = key();
+  shot.materials["flesh"].appearance.roughness = 0.1f;
+  EXPECT_EQ(key(), before) << "looks are no physics";
+  shot.materials["flesh"].physics.density = 900;
+  const StageKey heavier = key();
+  EXPECT_NE(heavier, before);
+  body.regions[0].stiffness = 5.0;
+  const StageKey stiffer = key();
+  EXPECT_NE(stiffer, heavier);
+  body.regions[0].select.terms = {{SelectSphere{Vec3::Zero(), 0.75}, SelectionUnit::Meter}};
+  EXPECT_NE(key(), stiffer) << "the surface points are the same, the elements need not be";
+}
+
 TEST(FrameKey, PhysicsChangesEveryFrame) {
-  EXPECT_EQ(first_changed([](Shot& s, BodyModel&) { s.solver.substeps = 3; }), 1);
-  EXPECT_EQ(first_changed([](Shot& s, BodyModel&) { s.settings.fps = 25; }), 1);
-  EXPECT_EQ(first_changed([](Shot& s, BodyModel&) { s.solver.rotation = RotationMethod::Energy; }), 1);
-  EXPECT_EQ(first_changed([](Shot&, BodyModel& m) { m.materials[0].density = 900; }), 1);
-  EXPECT_EQ(first_changed([](Shot&, BodyModel& m) { m.gravity.y() = -1.62; }), 1);
-  EXPECT_EQ(first_changed([](Shot&, BodyModel& m) { m.pins[0].points = {0, 1}; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.substeps = 3; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.settings.fps = 25; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.rotation = RotationMethod::Energy; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.gravity.y() = -1.62; }), 1);
+  EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].points = {0, 1}; }), 1);
 }
 
 }  // namespace

@@ -1,0 +1,71 @@
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "tool/commands/commands.h"
+#include "tool/stages/atomic_file.h"
+#include "tool/stages/cache_use.h"
+#include "tool/stages/picture_stage.h"
+#include "tool/stages/simulate_key.h"
+
+namespace softreel {
+namespace {
+
+void say(const CacheRemoval& removal, const Cache& cache, bool dry_run) {
+  std::printf("%s %lld files, %s, from %s; %s are left\n", dry_run ? "would remove" : "removed",
+              static_cast<long long>(removal.files), format_bytes(removal.bytes).c_str(), cache.folder().c_str(),
+              format_bytes(cache_size(cache) - (dry_run ? removal.bytes : 0)).c_str());
+}
+
+void operator+=(CacheRemoval& sum, const CacheRemoval& more) {
+  sum.files += more.files;
+  sum.bytes += more.bytes;
+}
+
+}  // namespace
+
+int run_clean(const CleanOptions& options) {
+  const bool dry_run = options.shot.dry_run;
+  if (options.shot.shot.empty()) {
+    if (options.shot.cache.empty())
+      throw input_error(
+          "clean: neither a shot nor a cache is named.\n  Accepted: softreel clean SHOT, or --cache DIR.");
+    if (!options.all && options.shot.cache_limit_gb < 0)
+      throw input_error(
+          "clean: without a shot there is no telling what is still needed.\n  Accepted: --all, or --cache-limit GB, or "
+          "a shot.");
+  }
+  Console console(Verbosity::Normal, false);
+  const Log log{{}, console.log().warning_sink};
+  CacheRemoval removal;
+  if (options.shot.shot.empty()) {
+    const Cache cache(options.shot.cache, Cache::Storing::Wanted, log);
+    removal += options.all ? empty_cache(cache, dry_run) : cut_cache(cache, options.shot.cache_limit_gb * 1e9, dry_run);
+    say(removal, cache, dry_run);
+    return 0;
+  }
+  ShotOptions silent = options.shot;
+  silent.quiet = true;
+  Session session(silent);
+  const Shot& shot = session.shot();
+  const Cache& cache = session.context().cache;
+  if (options.all) {
+    removal += empty_cache(cache, dry_run);
+  } else {
+    const ShotRun run(shot, session.context());
+    Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
+    const SceneStage scenes(run);
+    PictureStage pictures(scenes, shot, outputs, session.context());
+    const int first = shot.settings.first_frame, last = shot.settings.last_frame;
+    session.claim(run.items(first_simulated_frame(shot), last));
+    session.claim(pictures.items(first, last));
+    removal += clean_cache(cache, CacheUse::owner_id(shot.path, shot.output.directory), dry_run);
+    if (!dry_run) removal.files += sweep_temporaries(shot.output.directory);
+  }
+  if (options.shot.cache_limit_gb >= 0) removal += cut_cache(cache, options.shot.cache_limit_gb * 1e9, dry_run);
+  say(removal, cache, dry_run);
+  return 0;
+}
+
+}  // namespace softreel

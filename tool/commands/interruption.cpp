@@ -1,0 +1,55 @@
+#include "tool/commands/interruption.h"
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <thread>
+
+#include <unistd.h>
+
+#include "tool/stages/process.h"
+
+namespace softreel {
+namespace {
+
+/// A second, less what ending takes.
+constexpr timespec kPatience{0, 700'000'000};
+
+sigset_t watched_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+void watch() {
+  const sigset_t signals = watched_signals();
+  int signal = 0;
+  if (sigwait(&signals, &signal) != 0) return;
+  cancellation() = true;
+  end_processes();
+  while (sigtimedwait(&signals, nullptr, &kPatience) < 0 && errno == EINTR) continue;
+  // Still here: time is up, or a second signal came.
+  std::fputs("\nsoftreel: Interrupted; what is finished is kept. Run the same command again to go on.\n", stderr);
+  std::fflush(stderr);
+  ::_exit(130);
+}
+
+}  // namespace
+
+std::atomic<bool>& cancellation() {
+  static std::atomic<bool> cancelled{false};
+  return cancelled;
+}
+
+void watch_for_interruption() {
+  cancellation() = false;
+  const sigset_t signals = watched_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // every later thread inherits it: only the watch sees them
+  std::thread(watch).detach();
+}
+
+}  // namespace softreel

@@ -1,0 +1,258 @@
+#include "tool/stages/cache_use.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "tool/stages/atomic_file.h"
+#include "tool/stages/picture_record.h"
+
+namespace softreel {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kRunning = ".running";
+
+fs::path uses_folder(const Cache& cache) {
+  return fs::path(cache.format_folder()) / "uses";
+}
+
+/// Held exclusively while files are removed, shared while a claim is made: no claim is overlooked.
+std::string removal_lock(const Cache& cache) {
+  return (fs::path(cache.format_folder()) / "lock").string();
+}
+
+fs::path real(const std::string& path) {
+  std::error_code none;
+  const fs::path canonical = fs::weakly_canonical(path, none);
+  return none ? fs::path(path) : canonical;
+}
+
+struct Use {
+  fs::path file;
+  std::string owner, shot_path;
+  std::set<CacheItem> items, released;
+  bool running = false;
+};
+
+/// A file of uses/: the owner, the shot's path, then +ITEM and -ITEM lines.
+Use read_use(const fs::path& file) {
+  Use use;
+  use.file = file;
+  std::ifstream in(file);
+  std::getline(in, use.owner);
+  std::getline(in, use.shot_path);
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with('+')) use.items.insert(line.substr(1));
+    if (line.starts_with('-')) use.released.insert(line.substr(1));
+  }
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor >= 0) use.running = !FileLock::try_adopt(descriptor, FileLock::Sharing::Exclusive).has_value();
+  return use;
+}
+
+std::vector<Use> read_uses(const Cache& cache) {
+  std::vector<Use> uses;
+  std::error_code none;
+  for (fs::directory_iterator entry(uses_folder(cache), none), end; !none && entry != end; entry.increment(none))
+    uses.push_back(read_use(entry->path()));
+  return uses;
+}
+
+struct CachedFile {
+  fs::path path;
+  CacheItem item;
+  double bytes = 0;  ///< that its removal frees
+  fs::file_time_type used;
+};
+
+/// All results and finished files; not what the cache knows about itself.
+std::vector<CachedFile> list_files(const Cache& cache) {
+  std::vector<CachedFile> files;
+  std::error_code none;
+  for (fs::recursive_directory_iterator entry(cache.format_folder(), none), end; !none && entry != end;
+       entry.increment(none)) {
+    if (!entry->is_regular_file(none)) continue;
+    const std::string stage = entry->path().parent_path().filename().string();
+    if (entry.depth() != 1 || stage == "uses" || stage == "locks") continue;
+    CachedFile file{entry->path(), cache_item(stage, entry->path().filename().string()), 0, {}};
+    struct stat facts {};
+    if (::stat(file.path.c_str(), &facts) != 0) continue;
+    file.bytes = facts.st_nlink > 1 ? 0.0 : static_cast<double>(facts.st_size);
+    file.used = entry->last_write_time(none);
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+/// The finished files that picture records point to are needed with them.
+void add_pointed_files(const Cache& cache, std::set<CacheItem>& items) {
+  std::set<CacheItem> files;
+  for (const CacheItem& item : items) {
+    if (!item.starts_with(kPictureStage)) continue;
+    const auto record = load_picture_record(cache, item.substr(std::string_view(kPictureStage).size() + 1));
+    if (record) files.insert(cache_item("files", record->checksum + "." + record->extension));
+  }
+  items.merge(files);
+}
+
+std::set<CacheItem> claimed_items(const Cache& cache, const std::vector<Use>& uses) {
+  std::set<CacheItem> claimed;
+  for (const Use& use : uses)
+    if (use.running)
+      std::set_difference(use.items.begin(), use.items.end(), use.released.begin(), use.released.end(),
+                          std::inserter(claimed, claimed.end()));
+  add_pointed_files(cache, claimed);
+  return claimed;
+}
+
+void remove_file(const CachedFile& file, bool dry_run, CacheRemoval& removal) {
+  std::error_code failed;
+  if (!dry_run) fs::remove(file.path, failed);
+  if (failed) return;
+  removal.files += 1;
+  removal.bytes += file.bytes;
+}
+
+/// Format 1 kept its results directly in the cache folder; later ones have a folder named by their number.
+void remove_older_formats(const Cache& cache, bool dry_run, CacheRemoval& removal) {
+  std::vector<fs::path> folders{fs::path(cache.folder()) / "tetrahedra", fs::path(cache.folder()) / "simulation"};
+  for (int format = 1; format < kCacheFormat; ++format)
+    folders.push_back(fs::path(cache.folder()) / std::to_string(format));
+  for (const fs::path& folder : folders) {
+    std::error_code none;
+    for (fs::recursive_directory_iterator entry(folder, none), end; !none && entry != end; entry.increment(none)) {
+      if (!entry->is_regular_file(none)) continue;
+      removal.files += 1;
+      removal.bytes += static_cast<double>(entry->file_size(none));
+    }
+    if (!dry_run) fs::remove_all(folder, none);
+  }
+}
+
+/// What killed processes left: unfinished files, and locks that nobody holds.
+void remove_remains(const Cache& cache, bool dry_run, CacheRemoval& removal) {
+  std::error_code none;
+  for (fs::directory_iterator entry(cache.format_folder(), none), end; !none && entry != end; entry.increment(none))
+    if (!dry_run && entry->is_directory(none)) removal.files += sweep_temporaries(entry->path().string());
+  const fs::path locks = fs::path(cache.format_folder()) / "locks";
+  for (fs::directory_iterator entry(locks, none), end; !none && entry != end; entry.increment(none)) {
+    if (dry_run) continue;
+    if (auto lock = FileLock::try_take(entry->path().string())) std::move(*lock).remove_at_end(entry->path().string());
+  }
+}
+
+CacheRemoval remove_all_but(const Cache& cache, const std::set<CacheItem>& kept, bool dry_run) {
+  CacheRemoval removal;
+  for (const CachedFile& file : list_files(cache))
+    if (kept.count(file.item) == 0) remove_file(file, dry_run, removal);
+  remove_older_formats(cache, dry_run, removal);
+  remove_remains(cache, dry_run, removal);
+  return removal;
+}
+
+}  // namespace
+
+std::string CacheUse::owner_id(const std::string& shot_path, const std::string& output_folder) {
+  return KeyHasher("owner").add(real(shot_path).string()).add(real(output_folder).string()).key();
+}
+
+CacheUse::CacheUse(const Cache& cache, const std::string& shot_path, const std::string& output_folder)
+    : cache_(cache), owner_(owner_id(shot_path, output_folder)) {
+  const FileLock no_removal = FileLock::take(removal_lock(cache), FileLock::Sharing::Shared);
+  char host[256] = "host";
+  ::gethostname(host, sizeof host - 1);
+  std::error_code none;
+  fs::create_directories(uses_folder(cache), none);
+  path_ = (uses_folder(cache) / fmt::format("{}.{}.{}{}", owner_, host, ::getpid(), kRunning)).string();
+  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) return;  // a cache that cannot be written: nobody can remove anything either
+  ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  append(fmt::format("{}\n{}\n", owner_, real(shot_path).string()));
+}
+
+void CacheUse::append(const std::string& lines) {
+  // A list that is cut short on a full disk protects less; results stay right.
+  for (std::size_t at = 0; descriptor_ >= 0 && at < lines.size();) {
+    const ssize_t written = ::write(descriptor_, lines.data() + at, lines.size() - at);
+    if (written <= 0) return;
+    at += static_cast<std::size_t>(written);
+  }
+}
+
+void CacheUse::claim(const std::vector<CacheItem>& items) {
+  const FileLock no_removal = FileLock::take(removal_lock(cache_), FileLock::Sharing::Shared);
+  std::string lines;
+  for (const CacheItem& item : items) lines += "+" + item + "\n";
+  append(lines);
+}
+
+void CacheUse::release(const CacheItem& item) {
+  append("-" + item + "\n");
+}
+
+CacheUse::~CacheUse() {
+  if (descriptor_ < 0) return;
+  std::error_code none;
+  for (const Use& use : read_uses(cache_))  // of earlier runs of the same shot that were killed
+    if (use.owner == owner_ && !use.running && use.file.string().ends_with(kRunning)) fs::remove(use.file, none);
+  fs::rename(path_, uses_folder(cache_) / owner_, none);
+  ::close(descriptor_);
+}
+
+double cache_size(const Cache& cache) {
+  double bytes = 0;
+  for (const CachedFile& file : list_files(cache)) bytes += file.bytes;
+  return bytes;
+}
+
+CacheRemoval cut_cache(const Cache& cache, double limit, bool dry_run) {
+  CacheRemoval removal;
+  if (!fs::exists(cache.format_folder())) return removal;
+  const FileLock lock = FileLock::take(removal_lock(cache));
+  std::vector<CachedFile> files = list_files(cache);
+  double bytes = 0;
+  for (const CachedFile& file : files) bytes += file.bytes;
+  if (bytes <= limit) return removal;
+  const std::set<CacheItem> claimed = claimed_items(cache, read_uses(cache));
+  std::sort(files.begin(), files.end(), [](const CachedFile& a, const CachedFile& b) {
+    return std::pair(a.used, a.item) < std::pair(b.used, b.item);
+  });
+  for (const CachedFile& file : files) {
+    if (bytes - removal.bytes <= limit) break;
+    if (claimed.count(file.item) == 0) remove_file(file, dry_run, removal);
+  }
+  return removal;
+}
+
+CacheRemoval clean_cache(const Cache& cache, const std::string& owner_id, bool dry_run) {
+  if (!fs::exists(cache.folder())) return {};
+  const FileLock lock = FileLock::take(removal_lock(cache));
+  const std::vector<Use> uses = read_uses(cache);
+  std::set<CacheItem> needed;
+  for (const Use& use : uses) {
+    std::error_code none;
+    if (!use.running && use.owner != owner_id && fs::exists(use.shot_path, none))
+      needed.insert(use.items.begin(), use.items.end());
+    if (!use.running && !dry_run && (use.owner == owner_id || !fs::exists(use.shot_path, none)))
+      fs::remove(use.file, none);
+  }
+  add_pointed_files(cache, needed);
+  needed.merge(claimed_items(cache, uses));
+  return remove_all_but(cache, needed, dry_run);
+}
+
+CacheRemoval empty_cache(const Cache& cache, bool dry_run) {
+  if (!fs::exists(cache.folder())) return {};
+  const FileLock lock = FileLock::take(removal_lock(cache));
+  return remove_all_but(cache, claimed_items(cache, read_uses(cache)), dry_run);
+}
+
+}  // namespace softreel

@@ -1,0 +1,79 @@
+#include "tool/stages/file_lock.h"
+
+#include <cerrno>
+#include <filesystem>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace softreel {
+namespace {
+
+int open_lock_file(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor >= 0 || errno != ENOENT) return descriptor;
+  std::error_code ignored;
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path(), ignored);
+  return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+}
+
+/// Whether the locked file is still the one that the path names: its last holder may have removed it.
+bool is_current(int descriptor, const std::string& path) {
+  struct stat held {
+  }, named{};
+  return ::fstat(descriptor, &held) == 0 && ::stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
+         held.st_dev == named.st_dev;
+}
+
+int operation(FileLock::Sharing sharing) {
+  return sharing == FileLock::Sharing::Shared ? LOCK_SH : LOCK_EX;
+}
+
+int lock_patiently(int descriptor, int how) {
+  int result = 0;
+  do {
+    result = ::flock(descriptor, how);
+  } while (result != 0 && errno == EINTR);
+  return result;
+}
+
+}  // namespace
+
+std::optional<FileLock> FileLock::try_adopt(int descriptor, Sharing sharing) {
+  FileLock lock(descriptor);
+  if (lock_patiently(descriptor, operation(sharing) | LOCK_NB) == 0 || errno != EWOULDBLOCK) return lock;
+  return std::nullopt;
+}
+
+std::optional<FileLock> FileLock::try_take(const std::string& path, Sharing sharing) {
+  while (true) {
+    const int descriptor = open_lock_file(path);
+    if (descriptor < 0) return FileLock(-1);
+    std::optional<FileLock> lock = try_adopt(descriptor, sharing);
+    if (!lock || is_current(descriptor, path)) return lock;
+  }
+}
+
+FileLock FileLock::take(const std::string& path, Sharing sharing) {
+  while (true) {
+    FileLock lock(open_lock_file(path));
+    if (lock.descriptor_ < 0) return lock;
+    // A file system without locks (errno is not EINTR here) is treated like a read-only one.
+    if (lock_patiently(lock.descriptor_, operation(sharing)) != 0 || is_current(lock.descriptor_, path)) return lock;
+  }
+}
+
+FileLock::~FileLock() {
+  if (descriptor_ < 0) return;
+  if (!removed_.empty()) ::unlink(removed_.c_str());
+  ::close(descriptor_);
+}
+
+FileLock&& FileLock::remove_at_end(std::string path) && {
+  removed_ = std::move(path);
+  return std::move(*this);
+}
+
+}  // namespace softreel

@@ -1,0 +1,42 @@
+/// Locks between processes that end with their holder, however it ends (flock(2)).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace softreel {
+
+/// A lock on a file of its own. Released at destruction and when the process dies; never left behind.
+class FileLock {
+ public:
+  enum class Sharing { Shared, Exclusive };
+
+  /// Takes the lock, or nothing if another holder is in the way. The file is made if need be; where it cannot be made
+  /// (a read-only folder) nobody can write there either, and the lock is a formality that always succeeds.
+  static std::optional<FileLock> try_take(const std::string& path, Sharing sharing = Sharing::Exclusive);
+  /// Waits for the lock. For locks that are held for moments only.
+  static FileLock take(const std::string& path, Sharing sharing = Sharing::Exclusive);
+  /// The lock on a file that is open already; nothing if another holder is in the way. Takes over the descriptor.
+  static std::optional<FileLock> try_adopt(int descriptor, Sharing sharing);
+
+  FileLock(FileLock&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)), removed_(std::exchange(other.removed_, {})) {}
+  FileLock& operator=(FileLock&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    std::swap(removed_, other.removed_);
+    return *this;
+  }
+  ~FileLock();
+
+  /// The file goes with the lock: for locks on one result each, which would pile up.
+  FileLock&& remove_at_end(std::string path) &&;
+
+ private:
+  explicit FileLock(int descriptor) : descriptor_(descriptor) {}
+
+  int descriptor_;  ///< -1: a formality
+  std::string removed_;
+};
+
+}  // namespace softreel

@@ -1,0 +1,22 @@
+/// Which finished file of the cache a picture's key stands for.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tool/stages/cache.h"
+#include "tool/stages/stage_names.h"
+
+namespace softreel {
+
+/// The file FILES/CHECKSUM.EXTENSION of the cache. Several keys may lead to one file: equal pictures are one file.
+struct PictureRecord {
+  std::string extension;  ///< "png", "exr", "half" (scene-linear, for developing again)
+  StageKey checksum;
+  double seconds = 0;  ///< what making it took
+};
+
+std::optional<PictureRecord> load_picture_record(const Cache& cache, const StageKey& key);
+void store_picture_record(const Cache& cache, const StageKey& key, const PictureRecord& record);
+
+}  // namespace softreel

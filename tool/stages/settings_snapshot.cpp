@@ -1,0 +1,139 @@
+#include "tool/stages/settings_snapshot.h"
+
+#include <filesystem>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "tool/shot/shot_load.h"
+#include "tool/stages/atomic_file.h"
+
+namespace softreel {
+namespace {
+
+/// The entry of a snapshot that holds the shot; the others are paths of files.
+constexpr const char* kShotEntry = "shot";
+
+std::string absolute(const std::string& path) {
+  std::error_code none;
+  const auto real = std::filesystem::weakly_canonical(path, none);
+  return none ? path : real.string();
+}
+
+std::string checksum_of(const std::string& path) {
+  try {
+    return hash_bytes(read_file(path));
+  } catch (const Error&) {
+    return "unreadable";
+  }
+}
+
+/// Steps from the root of a document to a place in it.
+struct Step {
+  std::string key;        ///< of a table, or
+  std::size_t index = 0;  ///< of an array, where key is empty
+};
+using Steps = std::vector<Step>;
+
+std::string path_of(const Steps& steps) {
+  std::string path;
+  for (const Step& step : steps)
+    path += step.key.empty() ? fmt::format("[{}]", step.index) : (path.empty() ? "" : ".") + key_text(step.key);
+  return path;
+}
+
+/// The document with `value` at a place; without the place if there is no value.
+TomlValue replaced(TomlValue document, const Steps& steps, const TomlValue* value) {
+  TomlValue* at = &document;
+  for (std::size_t s = 0; s + 1 < steps.size(); ++s)
+    at = steps[s].key.empty() ? &(*at->array())[steps[s].index] : at->find(steps[s].key);
+  const Step& last = steps.back();
+  if (last.key.empty()) {
+    (*at->array())[last.index] = *value;  // arrays of other lengths are compared as a whole
+  } else if (value == nullptr) {
+    std::erase_if(*at->table(), [&](const TomlEntry& entry) { return entry.key == last.key; });
+  } else if (TomlValue* present = at->find(last.key)) {
+    *present = *value;
+  } else {
+    at->table()->push_back(toml_entry(last.key, *value));
+  }
+  return document;
+}
+
+/// Visits every innermost place where two documents differ; null: it is not there.
+class Comparison {
+ public:
+  using Visit = std::function<void(const Steps&, const TomlValue*, const TomlValue*)>;
+  explicit Comparison(Visit visit) : visit_(std::move(visit)) {}
+
+  void compare(const TomlValue& before, const TomlValue& after) {
+    if (before.table() != nullptr && after.table() != nullptr) {
+      for (const TomlEntry& entry : *after.table()) at({entry.key}, before.find(entry.key), &entry.value);
+      for (const TomlEntry& entry : *before.table())
+        if (after.find(entry.key) == nullptr) at({entry.key}, &entry.value, nullptr);
+    } else if (is_list_of_tables(before) && is_list_of_tables(after) &&
+               before.array()->size() == after.array()->size()) {
+      for (std::size_t i = 0; i < after.array()->size(); ++i) at({"", i}, &(*before.array())[i], &(*after.array())[i]);
+    } else if (to_text(before) != to_text(after)) {
+      visit_(steps_, &before, &after);
+    }
+  }
+
+ private:
+  static bool is_list_of_tables(const TomlValue& value) {
+    return value.array() != nullptr && !value.array()->empty() && value.array()->front().table() != nullptr;
+  }
+
+  void at(Step step, const TomlValue* before, const TomlValue* after) {
+    steps_.push_back(std::move(step));
+    if (before != nullptr && after != nullptr)
+      compare(*before, *after);
+    else
+      visit_(steps_, before, after);
+    steps_.pop_back();
+  }
+
+  Visit visit_;
+  Steps steps_;
+};
+
+TomlValue document_of(const SettingsSnapshot& snapshot) {
+  const auto found = snapshot.find(kShotEntry);
+  return parse_toml(found == snapshot.end() ? "" : found->second, "the manifest's settings");
+}
+
+}  // namespace
+
+SettingsSnapshot snapshot(const Shot& shot) {
+  Shot with_paths = shot;
+  SettingsSnapshot snapshot;
+  for (BodySettings& body : with_paths.bodies) {
+    body.mesh = absolute(body.mesh);
+    snapshot[body.mesh] = checksum_of(body.mesh);
+  }
+  if (!shot.environment_image.empty()) {
+    with_paths.environment_image = absolute(shot.environment_image);
+    snapshot[with_paths.environment_image] = checksum_of(with_paths.environment_image);
+  }
+  snapshot[kShotEntry] = to_toml(with_paths);
+  return snapshot;
+}
+
+std::vector<FieldChange> find_changes(const SettingsSnapshot& before, const SettingsSnapshot& after) {
+  std::vector<FieldChange> changes;
+  const TomlValue old_document = document_of(before), new_document = document_of(after);
+  Comparison comparison([&](const Steps& steps, const TomlValue* was, const TomlValue* is) {
+    changes.push_back({path_of(steps), was ? to_short_text(*was) : "", is ? to_short_text(*is) : "",
+                       replaced(new_document, steps, was)});
+  });
+  comparison.compare(old_document, new_document);
+  for (const auto& [path, checksum] : after) {
+    const auto was = before.find(path);
+    if (path == kShotEntry || was == before.end() || was->second == checksum) continue;
+    changes.push_back({"content of " + path, was->second, checksum, std::nullopt});
+  }
+  return changes;
+}
+
+}  // namespace softreel

@@ -1,0 +1,27 @@
+/// What a shot said when a result was made, and how that differs from what it says now.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tool/shot/shot.h"
+#include "tool/shot/toml_tree.h"
+#include "tool/stages/outputs.h"
+
+namespace softreel {
+
+/// The whole shot as TOML with absolute paths, and the checksum of each file it reads.
+SettingsSnapshot snapshot(const Shot& shot);
+
+/// One place where two snapshots differ.
+struct FieldChange {
+  std::string field;          ///< "body.creature.pull[0].keys", or "content of FILE"
+  std::string before, after;  ///< as TOML, in short; empty: the field was not there
+  /// The newer document with this place as it was before; none where only a file's content differs.
+  std::optional<TomlValue> undone;
+};
+
+/// All differences, fields in the order of the schema.
+std::vector<FieldChange> find_changes(const SettingsSnapshot& before, const SettingsSnapshot& after);
+
+}  // namespace softreel
