@@ -34,13 +34,6 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-std::vector<std::string> split(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
-
 }  // namespace
 
 RunningProgram::RunningProgram(const std::string& name, std::vector<std::string> arguments, const Abuse& abuse)
@@ -91,8 +84,15 @@ Outcome RunningProgram::wait() {
   return outcome;
 }
 
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
 Outcome run_abused(const std::string& arguments, const Abuse& abuse) {
-  return RunningProgram("abused", split("softreel " + arguments), abuse).wait();
+  return RunningProgram("abused", words_of("softreel " + arguments), abuse).wait();
 }
 
 Counted read_counts(const std::string& count_file) {

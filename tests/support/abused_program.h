@@ -38,6 +38,9 @@ class RunningProgram {
   int status_ = 0;
 };
 
+/// The parts of a text between blanks.
+std::vector<std::string> words_of(const std::string& text);
+
 /// Runs `softreel ARGUMENTS...`, split at blanks, to its end.
 Outcome run_abused(const std::string& arguments, const Abuse& abuse);
 

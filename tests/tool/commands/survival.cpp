@@ -25,7 +25,7 @@ nlohmann::json render_in_peace(const std::string& folder, const std::string& out
 }
 
 std::vector<std::string> final_files(const std::string& folder) {
-  std::vector<std::string> names = files_under(folder);
+  std::vector<std::string> names = exists(folder) ? files_under(folder) : std::vector<std::string>();
   std::erase_if(names, [](const std::string& name) {
     return is_hidden(name) || name.ends_with(".report.json") || name.ends_with(".resolved.toml");
   });
@@ -49,7 +49,6 @@ std::set<std::string> name_forms(const std::string& folder) {
 
 std::map<std::string, std::string> pictures_in(const std::string& folder) {
   std::map<std::string, std::string> pictures;
-  if (!exists(folder)) return pictures;
   for (const std::string& name : final_files(folder))
     if (name.ends_with(".png")) pictures[name] = read_text(folder + "/" + name);
   return pictures;

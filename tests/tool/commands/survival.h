@@ -17,7 +17,7 @@ nlohmann::json render_in_peace(const std::string& folder, const std::string& out
                                const std::string& command = "render");
 
 /// Names of files under a folder whose bytes a finished run promises: no dot-files and dot-folders, no report (times),
-/// no resolved shot (paths).
+/// no resolved shot (paths). None if there is no such folder.
 std::vector<std::string> final_files(const std::string& folder);
 /// Every final file of two folders has the same bytes.
 void expect_equal_final_files(const std::string& a, const std::string& b);
