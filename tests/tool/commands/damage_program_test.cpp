@@ -123,6 +123,31 @@ class DamageTest : public ::testing::Test {
   std::string folder_, options_ = kFrames;
 };
 
+TEST_F(DamageTest, OfACacheFileIsSaidAndMended) {
+  Random random(11);
+  const std::string sound = folder_ + "/sound/cache";
+  const auto names = filled_files(sound);
+  ASSERT_GT(names.size(), 8U);
+  int mended = 0;
+  constexpr int kRounds = 40;
+  for (int round = 0; round < kRounds; ++round) {
+    const Damage& damage = kDamages[static_cast<std::size_t>(round) % kDamages.size()];
+    const std::string name = names[below(names.size(), random)], other = names[below(names.size(), random)];
+    const std::string bytes = read_text(sound + "/" + name);
+    const std::string damaged = damage.apply(bytes, read_text(sound + "/" + other), random);
+    if (damaged == bytes) continue;  // swapped with its like
+    const std::string work = work_folder(), path = work + "/cache/" + name;
+    replace(path, damaged, round % 2 == 0);
+    SCOPED_TRACE(fmt::format("round {}: {} {} (with {})", round, name, damage.name, other));
+    const int said = times_said_while_all_is_made_equal(work, path);
+    if (read_text(path) == damaged) continue;  // nothing needed it
+    EXPECT_EQ(said, 1);
+    EXPECT_TRUE(read_text(path) == bytes);
+    ++mended;
+  }
+  EXPECT_GE(mended, kRounds / 4) << "too few damaged files were needed to test anything";
+}
+
 TEST_F(DamageTest, OfAllCacheFilesAtOnceIsMended) {
   Random random(12);
   const std::string work = work_folder();
@@ -131,6 +156,40 @@ TEST_F(DamageTest, OfAllCacheFilesAtOnceIsMended) {
     replace(path, kDamages[below(kDamages.size(), random)].apply(bytes, bytes + "y", random), false);
   }
   times_said_while_all_is_made_equal(work, work + "/no such file");
+}
+
+TEST_F(DamageTest, AFolderInPlaceOfACacheFileStopsNothing) {
+  Random random(13);
+  const auto names = filled_files(folder_ + "/sound/cache");
+  for (int round = 0; round < 5; ++round) {
+    const std::string work = work_folder(), path = work + "/cache/" + names[below(names.size(), random)];
+    SCOPED_TRACE(path);
+    fs::remove(path);
+    fs::create_directories(path + "/inside");
+    times_said_while_all_is_made_equal(work, path);
+  }
+}
+
+/// A picture must not be said twice, once when it is looked for and once when its equal is.
+TEST_F(DamageTest, OfAPictureOrMovieIsSaidAndMended) {
+  Random random(14);
+  options_ += " --set output.movie=true";
+  make_sound();
+  std::vector<std::string> names = final_files(folder_ + "/sound/out");
+  std::erase_if(names, [](const std::string& name) { return name.ends_with(".json"); });
+  ASSERT_EQ(names.size(), 9U);
+  for (int round = 0; round < 20; ++round) {
+    const Damage& damage = kDamages[static_cast<std::size_t>(round) % kDamages.size()];
+    const std::string work = work_folder(), name = names[below(names.size(), random)], path = work + "/out/" + name;
+    const std::string bytes = read_text(path), other = read_text(work + "/out/" + names[below(names.size(), random)]);
+    const std::string damaged = damage.apply(bytes, other, random);
+    if (damaged == bytes) continue;
+    SCOPED_TRACE(fmt::format("round {}: {} {}", round, name, damage.name));
+    const auto names_of_file = static_cast<std::size_t>(fs::hard_link_count(path));
+    const bool in_place = round % 2 == 0;
+    replace(path, damaged, in_place);
+    expect_said_and_mended(work, path, in_place ? names_of_file : 1);
+  }
 }
 
 TEST_F(DamageTest, OfAManifestIsSaidAndMended) {

@@ -82,6 +82,32 @@ TEST_F(DiskFull, IsSaidOnceAndLeavesNoWrongFile) {
   for (int i = 0; i < 20; ++i) expect_clear_end_and_recovery(sizes(random), "");
 }
 
+/// ffmpeg ends with status 0 when it could write all but the end of its file, so its word is not enough.
+TEST_F(DiskFull, WhileTheMovieIsEncodedIsSaidToo) {
+  const std::string movie = "--set output.movie=true";
+  const std::uint64_t bytes = bytes_of_reference(movie), movie_bytes = read_text(reference_ + "/ball.mp4").size();
+  ASSERT_GT(movie_bytes, 1000U);
+  // Of what is written last (movie, manifest, resolved shot, report), the movie comes first.
+  std::uint64_t last = movie_bytes;
+  for (const char* name : {"manifest.json", "resolved.toml", "report.json"})
+    last += read_text(reference_ + "/ball." + name).size();
+  for (int part = 1; part < 8; ++part) expect_clear_end_and_recovery(bytes - last + movie_bytes * part / 8, movie);
+}
+
+TEST_F(DiskFull, OfTheCacheAloneIsSaidOnceAndStopsNothing) {
+  bytes_of_reference();
+  for (const char* bytes : {"0", "60000", "200000"}) {
+    SCOPED_TRACE(bytes);
+    const std::string root = new_folder("full_cache"), output = root + "/out", cache = root + "/cache";
+    const Outcome outcome = run_abused(arguments(output, cache, ""), {{"ROOT", cache}, {"DISK_BYTES", bytes}});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(lines_with(outcome.err, "warning: ").size(), 1U) << outcome.err;
+    EXPECT_TRUE(says_disk_is_full(outcome.err)) << outcome.err;
+    EXPECT_NE(outcome.err.find(cache), std::string::npos) << outcome.err;
+    expect_equal_final_files(reference_, output);
+  }
+}
+
 TEST_F(DiskFull, ShortAndInterruptedCallsChangeNothing) {
   bytes_of_reference();
   for (const char* seed : {"1", "2", "3"}) {

@@ -1,6 +1,7 @@
 /// Ctrl-C in every phase: the program is soon gone, with status 130, and nothing of it stays but finished files.
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <functional>
 #include <sstream>
 #include <thread>
@@ -28,6 +29,15 @@ void wait_until(RunningProgram& program, const std::function<bool()>& condition)
   while (!program.has_ended() && !condition()) pause(milliseconds(2));
 }
 
+/// Whether the program has started another that still runs.
+bool has_child(pid_t pid) {
+  namespace fs = std::filesystem;
+  std::error_code gone;
+  for (const auto& thread : fs::directory_iterator(fmt::format("/proc/{}/task", pid), gone))
+    if (!read_text(thread.path() / "children").empty()) return true;
+  return false;
+}
+
 /// A phase of the work that lasts for seconds, and how to see from outside that the program is in it.
 struct Phase {
   const char* name;
@@ -36,6 +46,7 @@ struct Phase {
   std::string command;
   int rings;  ///< of the sphere
   std::function<bool(const RunningProgram&)> has_begun;
+  milliseconds later{0};  ///< until it is in the midst of it, where nothing can be seen from outside
 };
 
 void PrintTo(const Phase& phase, std::ostream* out) {
@@ -68,9 +79,15 @@ bool has_shown_progress(const RunningProgram& program) {
 const Phase kPhases[] = {
     {"Load", "--set body.ball.tets=300000", "", "simulate", 300, has_started},
     {"Tetrahedralize", "--set body.ball.tets=1000000", "", "simulate", 12, has_loaded},
+    {"Equilibrium", "--set body.ball.tets=100000 --set shot.start=\"equilibrium\"", "", "simulate", 12, has_loaded,
+     milliseconds(1500)},
     {"Simulate", "--set body.ball.tets=60000 --set shot.frames=[1,200]", "", "simulate", 12, has_shown_progress},
     {"Trace", "--set render.width=1920 --set render.height=1080 --set render.samples=1024", "simulate", "render", 12,
      has_loaded},
+    {"Encode",
+     "--set shot.frames=[1,200] --set render.width=640 --set render.height=360 --set shot.mode=\"static\" "
+     "--set shot.independent=true --set body.ball.pull[0].keys=[{frame=1}] --set output.movie=true",
+     "", "render", 12, [](const RunningProgram& program) { return has_child(program.pid()); }},
 };
 
 class Interrupt : public ::testing::TestWithParam<Phase> {
@@ -83,12 +100,17 @@ class Interrupt : public ::testing::TestWithParam<Phase> {
     if (!GetParam().prepare.empty()) render_in_peace(folder_, output(), GetParam().options, GetParam().prepare);
   }
 
+  /// These shots are larger than others; what they leave is of use only to find a mistake.
+  void TearDown() override {
+    if (!HasFailure()) std::filesystem::remove_all(folder_);
+  }
+
   std::string output() const { return folder_ + "/out"; }
 
   /// Sends the signal `delay` after the phase began. Returns how long the program lived on.
   milliseconds interrupt(RunningProgram& program, int signal, milliseconds delay) const {
     wait_until(program, [&] { return GetParam().has_begun(program); });
-    pause(delay);
+    pause(delay + GetParam().later);
     EXPECT_FALSE(program.has_ended()) << "the signal came too late to test anything";
     const auto sent = std::chrono::steady_clock::now();
     program.signal(signal);

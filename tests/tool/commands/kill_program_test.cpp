@@ -2,6 +2,7 @@
 #include <chrono>
 #include <csignal>
 #include <random>
+#include <regex>
 #include <thread>
 
 #include <fmt/format.h>
@@ -51,6 +52,11 @@ Variant make_variant(const std::string& folder, int number) {
   return variant;
 }
 
+/// Has said that the first frame is done. From then on nothing of another variant may be left in the frame range.
+bool has_shown_progress(const std::string& err) {
+  return std::regex_search(err, std::regex(fmt::format("\\b[0-9]+/{}\\b", kFrames)));
+}
+
 class Kill : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -78,14 +84,19 @@ class Kill : public ::testing::Test {
                       {{"ROOT", output_ + ":" + folder_ + "/cache"}, {"KILL_AT", std::to_string(call)}});
   }
 
-  /// Every picture is whole and of this variant or of the one before.
-  void expect_sound_pictures(const Variant& variant, const Pictures& before) const {
+  /// Every picture is whole and of this variant, or, before the first sign of progress, of the one before.
+  void expect_sound_pictures(const Variant& variant, const Pictures& before, const std::string& err) const {
+    std::vector<std::string> old_names;
     for (const auto& [name, bytes] : pictures_in(output_)) {
       const auto wanted = variant.pictures.find(name);
       ASSERT_NE(wanted, variant.pictures.end()) << name;
       if (bytes == wanted->second) continue;
       const auto old = before.find(name);
       ASSERT_TRUE(old != before.end() && bytes == old->second) << name << " is of no variant, or not whole";
+      old_names.push_back(name);
+    }
+    if (has_shown_progress(err)) {
+      EXPECT_EQ(old_names, std::vector<std::string>{}) << "pictures of an older shot are left, after:\n" << err;
     }
   }
 
@@ -95,11 +106,15 @@ class Kill : public ::testing::Test {
     EXPECT_TRUE(movies_.contains(read_text(output_ + "/ball.mp4"))) << "a movie that is not whole, or of no shot";
   }
 
-  /// Without a disturbance the rest is made.
+  /// Without a disturbance the rest is made, and only the rest.
   void finish(const Variant& variant) {
-    const Outcome outcome = run_abused(arguments(variant) + " --quiet", {});
+    int survivors = 0;
+    for (const auto& [name, bytes] : pictures_in(output_)) survivors += bytes == variant.pictures.at(name) ? 1 : 0;
+    const Outcome outcome = run_abused(arguments(variant) + " --quiet --json", {});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_TRUE(lines_with(outcome.err, "damaged").empty()) << outcome.err;
+    const auto report = nlohmann::json::parse(outcome.out);
+    EXPECT_LE(report["pictures"]["traced"].get<int>(), kFrames - survivors) << survivors << " pictures were finished";
     EXPECT_TRUE(pictures_in(output_) == variant.pictures);
   }
 
@@ -122,7 +137,7 @@ TEST_F(Kill, AHundredTimesLeavesNoWrongFile) {
     const Outcome outcome = try_to_render(variant, attempt % 2 == 1);
     ASSERT_TRUE(outcome.status == 0 || outcome.status == 128 + SIGKILL) << outcome.status << outcome.err;
     killed += outcome.status == 0 ? 0 : 1;
-    expect_sound_pictures(variant, before);
+    expect_sound_pictures(variant, before, outcome.err);
     expect_sound_movie(variant);
   }
   EXPECT_GE(killed, kTries / 3) << "too few tries were killed to test anything";
@@ -132,6 +147,7 @@ TEST_F(Kill, AHundredTimesLeavesNoWrongFile) {
   ASSERT_TRUE(variant.has_movie);
   finish(variant);
   expect_equal_final_files(variant.reference, output_);
+  EXPECT_EQ(files_under(variant.reference), files_under(output_)) << "a temporary file is left";
 }
 
 /// Not at random: with three frames every change of a file can have its own death.
@@ -156,7 +172,10 @@ TEST_F(Kill, AtEveryChangeOfAFileLeavesNoWrongFile) {
     const Outcome outcome = run_abused(in(work), {});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
+    const auto report = nlohmann::json::parse(outcome.out);
+    EXPECT_LE(report["pictures"]["traced"].get<std::size_t>(), wanted.size() - survivors.size());
     expect_equal_final_files(reference, output);
+    EXPECT_EQ(files_under(reference), files_under(output)) << "a temporary file is left";
   }
 }
 

@@ -48,6 +48,32 @@ TEST_F(ReadOnly, OutputFolderIsNamedBeforeAnythingIsTraced) {
   }
 }
 
+TEST_F(ReadOnly, CacheIsUsedAsFarAsItGoes) {
+  const auto simulated = render_in_peace(folder_, folder_ + "/first",
+                                         fmt::format("--cache {}/cache {} --frames 1-5", folder_, kFrames), "simulate");
+  ASSERT_EQ(simulated["simulation"]["frames"], 5);
+  const auto stored = files_under(folder_ + "/cache");
+  const Outcome outcome = run_in("cache", "render", "out", "--quiet --json");
+  expect_one_warning_of_the_cache(outcome);
+  ASSERT_EQ(outcome.status, 0);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["simulation"]["frames_from_cache"], 5);
+  expect_equal_final_files(folder_ + "/reference", folder_ + "/out");
+  EXPECT_EQ(files_under(folder_ + "/cache"), stored);
+}
+
+TEST_F(ReadOnly, CacheThatCannotBeMadeIsSaidOnce) {
+  expect_one_warning_of_the_cache(run_in("cache", "render", "out", "--quiet"));
+  expect_equal_final_files(folder_ + "/reference", folder_ + "/out");
+  EXPECT_FALSE(exists(folder_ + "/cache"));
+}
+
+TEST_F(ReadOnly, CacheStopsNoExport) {
+  render_in_peace(folder_, folder_ + "/exported",
+                  fmt::format("--cache {}/reference_cache {} --format obj", folder_, kFrames), "export");
+  expect_one_warning_of_the_cache(run_in("cache", "export", "out", "--format obj --quiet"));
+  expect_equal_final_files(folder_ + "/exported", folder_ + "/out");
+}
+
 TEST_F(ReadOnly, CacheStopsASimulationWhichMakesNothingElse) {
   const Outcome outcome = run_in("cache", "simulate", "out", "--quiet");
   EXPECT_EQ(outcome.status, 1);

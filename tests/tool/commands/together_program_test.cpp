@@ -53,6 +53,15 @@ class Together : public ::testing::Test {
   std::string folder_, work_;
 };
 
+TEST_F(Together, TheyMakeOneOutputOfOneShot) {
+  for (const int offset : kOffsets) {
+    SCOPED_TRACE(fmt::format("{} ms apart", offset));
+    work_ = new_folder("together_work");
+    run_both(offset, "out", "out", kShot);
+    expect_as("reference", "out");
+  }
+}
+
 TEST_F(Together, TheyMakeTwoOutputsOfOneShot) {
   for (const int offset : kOffsets) {
     SCOPED_TRACE(fmt::format("{} ms apart", offset));
@@ -71,6 +80,20 @@ TEST_F(Together, TheyMakeTwoShotsWithOneCache) {
     expect_as("reference", "out");
     expect_as("other_reference", "second");
   }
+}
+
+TEST_F(Together, FourShareTheFramesOfAnOutput) {
+  work_ = new_folder("together_work");
+  std::vector<std::unique_ptr<RunningProgram>> programs;
+  for (int k = 0; k < 4; ++k) {
+    const std::string frames = fmt::format(" --frames {}-{}", std::max(1, 3 * k), std::min(10, 3 * k + 4));
+    programs.push_back(std::make_unique<RunningProgram>(std::to_string(k), command(work_ + "/out", kShot + frames)));
+  }
+  for (const auto& program : programs) EXPECT_EQ(program->wait().status, 0) << program->err();
+  // Whatever each knew of the others, the next run has nothing to trace.
+  const auto report = render_in_peace(folder_, work_ + "/out", fmt::format("--cache {}/cache {}", work_, kShot));
+  EXPECT_EQ(report["pictures"]["traced"], 0);
+  expect_as("reference", "out");
 }
 
 }  // namespace
