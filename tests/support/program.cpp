@@ -27,6 +27,11 @@ void write_text(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
+std::string stored_content(const std::string& path) {
+  const std::string text = read_text(path);
+  return text.starts_with("softreel cache") ? text.substr(text.find('\n')) : text;
+}
+
 bool exists(const std::string& path) {
   return fs::exists(path);
 }

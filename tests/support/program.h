@@ -19,6 +19,8 @@ std::string new_folder(const std::string& name);
 
 std::string read_text(const std::string& path);
 void write_text(const std::string& path, const std::string& text);
+/// What a stored result holds besides how long making it took, which its first line says; other files whole.
+std::string stored_content(const std::string& path);
 bool exists(const std::string& path);
 /// Names of the regular files under a folder, with folders, sorted; those that start with '.' at the top excepted.
 std::vector<std::string> files_under(const std::string& folder);

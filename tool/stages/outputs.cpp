@@ -31,7 +31,18 @@ std::string settings_id_of(const SettingsSnapshot& settings) {
 
 Outputs::Outputs(std::string folder, std::string shot_name, const Log& log)
     : folder_(std::move(folder)), shot_name_(std::move(shot_name)), log_(log) {
+  revision_ = stored_revision();
   contents_ = read();
+}
+
+std::string Outputs::lock_path() const {
+  return (fs::path(folder_) / fmt::format(".{}.manifest.lock", shot_name_)).string();
+}
+
+std::string Outputs::stored_revision() const {
+  std::string revision;
+  std::getline(std::ifstream(lock_path()), revision);
+  return revision;
 }
 
 std::string Outputs::manifest_path() const {
@@ -157,18 +168,15 @@ void Outputs::update(const std::function<void(Contents&)>& change) {
   const std::lock_guard in_process(mutex_);
   make_folder(folder_);
   // The lock file holds a random text that each writer replaces: whoever finds another one reads the manifest again.
-  const std::string lock_path = (fs::path(folder_) / fmt::format(".{}.manifest.lock", shot_name_)).string();
-  const FileLock lock = FileLock::take(lock_path);
-  std::string revision;
-  std::getline(std::ifstream(lock_path), revision);
-  if (revision != revision_) contents_ = read();
+  const FileLock lock = FileLock::take(lock_path());
+  if (stored_revision() != revision_) contents_ = read();
   change(contents_);
   if (!settings_id_.empty()) contents_.settings[settings_id_] = settings_;
   std::set<std::string> used{contents_.simulated, settings_id_};
   for (const auto& [name, entry] : contents_.entries) used.insert(entry.settings);
   std::erase_if(contents_.settings, [&](const auto& item) { return used.count(item.first) == 0; });
   revision_ = fmt::format("{:08x}{:08x}", std::random_device{}(), std::random_device{}());
-  std::ofstream(lock_path, std::ios::trunc) << revision_ << "\n";
+  std::ofstream(lock_path(), std::ios::trunc) << revision_ << "\n";
   write_manifest();
 }
 

@@ -78,6 +78,8 @@ class Outputs {
   };
   void update(const std::function<void(Contents&)>& change);
   Contents read() const;
+  std::string lock_path() const;
+  std::string stored_revision() const;
   void write_manifest() const;
   std::string manifest_path() const;
   void insert(const std::string& path, const OutputEntry& entry);

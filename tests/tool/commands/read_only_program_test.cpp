@@ -51,12 +51,12 @@ TEST_F(ReadOnly, OutputFolderIsNamedBeforeAnythingIsTraced) {
 TEST_F(ReadOnly, CacheIsUsedAsFarAsItGoes) {
   const auto simulated = render_in_peace(folder_, folder_ + "/first",
                                          fmt::format("--cache {}/cache {} --frames 1-5", folder_, kFrames), "simulate");
-  ASSERT_EQ(simulated["simulation"]["frames"], 5);
+  ASSERT_EQ(simulated["simulation"]["computed"], 5);
   const auto stored = files_under(folder_ + "/cache");
   const Outcome outcome = run_in("cache", "render", "out", "--quiet --json");
   expect_one_warning_of_the_cache(outcome);
   ASSERT_EQ(outcome.status, 0);
-  EXPECT_EQ(nlohmann::json::parse(outcome.out)["simulation"]["frames_from_cache"], 5);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["simulation"]["loaded"], 5);
   expect_equal_final_files(folder_ + "/reference", folder_ + "/out");
   EXPECT_EQ(files_under(folder_ + "/cache"), stored);
 }

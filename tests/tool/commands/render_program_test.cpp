@@ -22,12 +22,6 @@ json render(const std::string& folder, const std::string& output, const std::str
   return json::parse(outcome.out);
 }
 
-/// The payload of a stored result: its first line holds how long making it took.
-std::string comparable(const std::string& folder, const std::string& name) {
-  const std::string text = read_text(folder + "/" + name);
-  return text.starts_with("softreel cache") ? text.substr(text.find('\n')) : text;
-}
-
 /// Every file of two folders has the same content, but for what holds times, paths and threads.
 void expect_equal_folders(const std::string& a, const std::string& b) {
   const auto kept = [](std::vector<std::string> names) {
@@ -39,7 +33,8 @@ void expect_equal_folders(const std::string& a, const std::string& b) {
   };
   const auto names = kept(files_under(a));
   ASSERT_EQ(names, kept(files_under(b)));
-  for (const std::string& name : names) EXPECT_TRUE(comparable(a, name) == comparable(b, name)) << name << " differs";
+  for (const std::string& name : names)
+    EXPECT_TRUE(stored_content(a + "/" + name) == stored_content(b + "/" + name)) << name << " differs";
 }
 
 TEST(Render, MakesEveryFrameAndSaysSo) {
