@@ -137,16 +137,21 @@ void remove_older_formats(const Cache& cache, bool dry_run, CacheRemoval& remova
   }
 }
 
+/// Locks that nobody holds: their holders were killed.
+void remove_dead_locks(const Cache& cache) {
+  const fs::path locks = fs::path(cache.format_folder()) / "locks";
+  std::error_code none;
+  for (fs::directory_iterator entry(locks, none), end; !none && entry != end; entry.increment(none))
+    if (auto lock = FileLock::try_take(entry->path().string()))
+      const FileLock removed = std::move(*lock).remove_at_end(entry->path().string());
+}
+
 /// What killed processes left: unfinished files, and locks that nobody holds.
 void remove_remains(const Cache& cache, bool dry_run, CacheRemoval& removal) {
   std::error_code none;
   for (fs::directory_iterator entry(cache.format_folder(), none), end; !none && entry != end; entry.increment(none))
     if (!dry_run && entry->is_directory(none)) removal.files += sweep_temporaries(entry->path().string());
-  const fs::path locks = fs::path(cache.format_folder()) / "locks";
-  for (fs::directory_iterator entry(locks, none), end; !none && entry != end; entry.increment(none)) {
-    if (dry_run) continue;
-    if (auto lock = FileLock::try_take(entry->path().string())) std::move(*lock).remove_at_end(entry->path().string());
-  }
+  if (!dry_run) remove_dead_locks(cache);
 }
 
 CacheRemoval remove_all_but(const Cache& cache, const std::set<CacheItem>& kept, bool dry_run) {
@@ -201,6 +206,7 @@ void CacheUse::release(const CacheItem& item) {
 CacheUse::~CacheUse() {
   if (descriptor_ < 0) return;
   std::error_code none;
+  remove_dead_locks(cache_);
   for (const Use& use : read_uses(cache_))  // of earlier runs of the same shot that were killed
     if (use.owner == owner_ && !use.running && use.file.string().ends_with(kRunning)) fs::remove(use.file, none);
   fs::rename(path_, uses_folder(cache_) / owner_, none);
