@@ -28,6 +28,7 @@ std::vector<std::string> child_command(const BatchOptions& batch, const std::str
   add("--frames", options.frames);
   add("--output", options.output);
   add("--cache", options.cache);
+  if (options.cache_limit_gb >= 0) add("--cache-limit", fmt::format("{}", options.cache_limit_gb));
   if (options.threads > 0) add("--threads", std::to_string(options.threads));
   return command;
 }

@@ -1,10 +1,14 @@
 #include <cstdio>
+#include <set>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "tool/commands/commands.h"
+#include "tool/stages/picture_stage.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
+#include "tool/stages/simulate_key.h"
 #include "tool/stages/stage_names.h"
 
 namespace softreel {
@@ -22,6 +26,7 @@ constexpr double kBytesPerPixel = 48;
 
 struct Plan {
   double tets = 0, triangles = 0;
+  int simulated = 0, traced = 0;  ///< body frames and pictures that are not stored
   double fill_seconds = 0, simulate_seconds = 0, render_seconds = 0, bytes = 0;
 };
 
@@ -32,23 +37,40 @@ double expected_tets(const BodySettings& body, const Vec3& size) {
   return 12 * size.prod() / (body.edge * body.edge * body.edge);
 }
 
-Plan make_plan(const ShotRun& run, const FrameSpan& frames, int threads) {
+/// Body frames that the pictures `needed` ask for and the cache does not hold: all from the last stored one on.
+int frames_to_simulate(const ShotRun& run, std::size_t body, const std::vector<int>& needed) {
+  const int start = first_simulated_frame(run.shot());
+  std::set<int> missing;
+  for (const int frame : needed)
+    for (int f = frame; f >= start; --f) {
+      if (missing.count(f) > 0 || run.context().cache.has(kSimulationStage, run.simulation(body).frame_key(f))) break;
+      missing.insert(f);
+    }
+  return static_cast<int>(missing.size());
+}
+
+Plan make_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan& frames, int threads) {
   const Shot& shot = run.shot();
   const double speed = threads / 2.0;
+  std::vector<int> needed;
+  for (int frame = frames.first; frame <= frames.last; ++frame)
+    if (!pictures.is_kept(frame) && !pictures.is_stored(frame)) needed.push_back(frame);
+  const double steps = shot.settings.mode == SimulationMode::Static ? kStaticStepsPerFrame : shot.solver.substeps;
   Plan plan;
+  plan.traced = static_cast<int>(needed.size());
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const LoadedBody& loaded = run.loaded(b);
     const double tets = expected_tets(shot.bodies[b], used_bounds(loaded.surface).size());
+    const int simulated = frames_to_simulate(run, b, needed);
     plan.tets += tets;
     plan.triangles += static_cast<double>(loaded.surface.triangles.size());
-    if (!run.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key()))
+    plan.simulated += simulated;
+    plan.simulate_seconds += simulated * steps * tets * kStepSecondsPerTet / speed;
+    if (plan.traced > 0 && !run.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key()))
       plan.fill_seconds += tets * kFillSecondsPerTet / speed;
   }
-  const int simulated = frames.last - shot.settings.first_frame + 1 + shot.settings.preroll;
-  const double steps = shot.settings.mode == SimulationMode::Static ? kStaticStepsPerFrame : shot.solver.substeps;
-  plan.simulate_seconds = simulated * steps * plan.tets * kStepSecondsPerTet / speed;
   const double pixels = static_cast<double>(shot.render.params.width) * shot.render.params.height;
-  plan.render_seconds = frames.count() * pixels * shot.render.params.samples / (kPathsPerSecond * speed);
+  plan.render_seconds = plan.traced * pixels * shot.render.params.samples / (kPathsPerSecond * speed);
   plan.bytes = plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle + pixels * kBytesPerPixel;
   return plan;
 }
@@ -63,7 +85,9 @@ int run_plan(const ShotOptions& options) {
   const FrameSpan frames = session.frames();
   const ShotRun run(shot, session.context());
   const SceneStage scenes(run);
-  const Plan plan = make_plan(run, frames, session.context().threads.count());
+  Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
+  const PictureStage pictures(scenes, shot, outputs, session.context());
+  const Plan plan = make_plan(run, pictures, frames, session.context().threads.count());
   std::printf("%s: would do (nothing is written):\n", shot.settings.name.c_str());
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const bool cached = session.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key());
@@ -72,19 +96,18 @@ int run_plan(const ShotOptions& options) {
                 expected_tets(shot.bodies[b], used_bounds(run.loaded(b).surface).size()),
                 cached ? " (in the cache already)" : "");
   }
-  std::printf("  simulate frames %d-%d (%s); frames that the cache holds are skipped\n",
-              shot.settings.first_frame - shot.settings.preroll, frames.last,
+  std::printf("  simulate %d of %zu body frames (%s), the others are stored or not needed\n", plan.simulated,
+              run.body_count() * static_cast<std::size_t>(frames.last - first_simulated_frame(shot) + 1),
               shot.settings.mode == SimulationMode::Static ? "static"
                                                            : fmt::format("{} sub-steps", shot.solver.substeps).c_str());
-  std::printf("  render %d frames of %d x %d at %d samples to %s\n", frames.count(), shot.render.params.width,
-              shot.render.params.height, shot.render.params.samples, shot.output.directory.c_str());
-  std::printf(
-      "  expected, within a factor of two: memory %s; time %s (fill %s, simulate %s, render %s) if nothing is "
-      "there yet\n",
-      format_bytes(plan.bytes).c_str(),
-      format_duration(plan.fill_seconds + plan.simulate_seconds + plan.render_seconds).c_str(),
-      format_duration(plan.fill_seconds).c_str(), format_duration(plan.simulate_seconds).c_str(),
-      format_duration(plan.render_seconds).c_str());
+  std::printf("  trace %d of %d frames of %d x %d at %d samples to %s\n", plan.traced, frames.count(),
+              shot.render.params.width, shot.render.params.height, shot.render.params.samples,
+              shot.output.directory.c_str());
+  std::printf("  expected, within a factor of two: memory %s; time %s (fill %s, simulate %s, render %s)\n",
+              format_bytes(plan.bytes).c_str(),
+              format_duration(plan.fill_seconds + plan.simulate_seconds + plan.render_seconds).c_str(),
+              format_duration(plan.fill_seconds).c_str(), format_duration(plan.simulate_seconds).c_str(),
+              format_duration(plan.render_seconds).c_str());
   return 0;
 }
 

@@ -47,6 +47,14 @@ bool PictureStage::is_kept(int frame) const {
                      [&](const File& file) { return outputs_.is_done(file.path, file.key); });
 }
 
+bool PictureStage::is_stored(int frame) const {
+  const StageKey trace = trace_key(frame);
+  if (!shot_.output.exr && context_.cache.has(kPictureStage, file_key(kLinear, trace))) return true;
+  const std::vector<File> wanted = files(frame, trace);
+  return std::all_of(wanted.begin(), wanted.end(),
+                     [&](const File& file) { return context_.cache.has(kPictureStage, file.key); });
+}
+
 double PictureStage::seconds(int frame) const {
   double seconds = 0;
   for (const File& file : files(frame, trace_key(frame)))

@@ -41,6 +41,8 @@ class PictureStage {
 
   /// True if all files are there and whole.
   bool is_kept(int frame) const;
+  /// True if the cache has all files, or what they are developed from; their bytes are not read.
+  bool is_stored(int frame) const;
   /// What making the frame's files took when they were made.
   double seconds(int frame) const;
   /// Removes what is under the names of these frames' files and is not theirs: pictures of an older shot, and files
