@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -7,7 +8,6 @@
 #include "tool/stages/atomic_file.h"
 #include "tool/stages/cache_use.h"
 #include "tool/stages/picture_stage.h"
-#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 namespace {
@@ -36,10 +36,16 @@ int run_clean(const CleanOptions& options) {
           "clean: without a shot there is no telling what is still needed.\n  Accepted: --all, or --cache-limit GB, or "
           "a shot.");
   }
+  if (options.shot.cache_limit_gb == 0)
+    throw input_error(
+        "clean: --cache-limit 0 stands for no limit.\n  Accepted: --all to remove everything, or more than 0.");
   Console console(Verbosity::Normal, false);
   const Log log{{}, console.log().warning_sink};
   CacheRemoval removal;
   if (options.shot.shot.empty()) {
+    if (!std::filesystem::is_directory(options.shot.cache))
+      throw input_error(
+          fmt::format("clean: --cache {}: is no folder.\n  Accepted: a cache. Check the path.", options.shot.cache));
     const Cache cache(options.shot.cache, Cache::Storing::Wanted, log);
     removal += options.all ? empty_cache(cache, dry_run) : cut_cache(cache, options.shot.cache_limit_gb * 1e9, dry_run);
     say(removal, cache, dry_run);
@@ -55,12 +61,9 @@ int run_clean(const CleanOptions& options) {
   } else {
     const ShotRun run(shot, session.context());
     Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
-    const SceneStage scenes(run);
-    PictureStage pictures(scenes, shot, outputs, session.context());
-    const int first = shot.settings.first_frame, last = shot.settings.last_frame;
-    session.claim(run.items(first_simulated_frame(shot), last));
-    session.claim(pictures.items(first, last));
-    removal += clean_cache(cache, CacheUse::owner_id(shot.path, shot.output.directory), dry_run);
+    const std::vector<CacheItem> needed = Session::items(run, outputs);
+    removal += clean_cache(cache, CacheUse::owner_id(shot.path, shot.output.directory), needed, dry_run);
+    if (!dry_run) CacheUse(cache, shot.path, shot.output.directory).claim(needed);  // remembered
     if (!dry_run) removal.files += sweep_temporaries(shot.output.directory);
   }
   if (options.shot.cache_limit_gb >= 0) removal += cut_cache(cache, options.shot.cache_limit_gb * 1e9, dry_run);

@@ -108,7 +108,7 @@ class BodyExport {
     return KeyHasher("export 2")
         .add(options_.format)
         .add(options_.space)
-        .add(run_.loaded(body_).file_checksum)
+        .add(run_.loaded(body_).file_key)
         .add(run_.loaded(body_).key)
         .add(simulation.filled_key())
         .add(simulation.frame_key(frame))
@@ -141,8 +141,7 @@ int run_export(const ExportOptions& options) {
   const FrameSpan frames = session.frames();
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
   ShotRun run(shot, session.context());
-  session.prepare(outputs);
-  session.claim(run.items(first_simulated_frame(shot), frames.last));
+  session.prepare(outputs, run);
   outputs.note_simulation();
   std::vector<BodyExport> exports;
   for (std::size_t b = 0; b < run.body_count(); ++b) exports.emplace_back(options, frames, run, b, outputs);

@@ -17,7 +17,7 @@ namespace {
 constexpr SkinRequest kNoBlur{true, 0, 1};
 
 StageKey preview_key(const Shot& shot, const StageKey& look) {
-  return KeyHasher("preview 2").add(look).add(shot.output.view).add(shot.output.exposure).key();
+  return KeyHasher("preview 3").add(look).add(shot.output.view).add(shot.output.exposure).key();
 }
 
 }  // namespace
@@ -29,8 +29,7 @@ int run_preview(const ShotOptions& options) {
   const FrameSpan frames = session.frames();
   Outputs outputs(shot.output.directory, shot.settings.name + ".preview", session.context().log);
   ShotRun run(shot, session.context());
-  session.prepare(outputs);
-  session.claim(run.items(first_simulated_frame(shot), frames.last));
+  session.prepare(outputs, run);
   SceneStage scenes(run);
   std::unique_ptr<Preview> preview;  // made when the first frame has to be drawn
   int written = 0;
@@ -39,7 +38,7 @@ int run_preview(const ShotOptions& options) {
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     session.context().stop_if_cancelled();
     const std::string path = outputs.frame_path(frame, "png");
-    const StageKey key = preview_key(shot, scenes.trace_key(frame));
+    const StageKey key = preview_key(shot, scenes.preview_key(frame));
     if (outputs.is_done(path, key)) {
       saved += outputs.entry(path)->seconds;
       session.console().advance(frame - frames.first + 1, fmt::format("frame {} there already", frame));

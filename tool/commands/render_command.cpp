@@ -48,11 +48,9 @@ int run_render(const ShotOptions& options) {
   const FrameSpan frames = session.frames();
   ShotRun run(shot, session.context_beside());
   Outputs outputs(session.shot().output.directory, session.shot().settings.name, session.context().log);
-  session.prepare(outputs);
+  CacheUse& use = session.prepare(outputs, run);
   SceneStage scenes(run);
   PictureStage pictures(scenes, shot, outputs, session.context());
-  session.claim(run.items(first_simulated_frame(shot), frames.last));
-  CacheUse& use = session.claim(pictures.items(frames.first, frames.last));
   remove_outdated(session, pictures, outputs);
   outputs.note_simulation();
   session.console().begin("frames", frames.count());

@@ -10,7 +10,9 @@
 #include "core/base/error.h"
 #include "tool/shot/shot_load.h"
 #include "tool/stages/atomic_file.h"
+#include "tool/stages/picture_stage.h"
 #include "tool/stages/settings_snapshot.h"
+#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 namespace {
@@ -64,24 +66,34 @@ Session::Session(const ShotOptions& options, Cache::Storing storing)
           storing, log_),
       context_{threads_, log_, times_, cache_, cancellation()},
       context_beside_{threads_beside_, log_, times_, cache_, cancellation()},
-      start_(std::chrono::steady_clock::now()) {
-  if (options.cache_limit_gb >= 0) shot_.output.cache_limit_gb = options.cache_limit_gb;
+      start_(std::chrono::steady_clock::now()) {}
+
+std::vector<CacheItem> Session::items(const ShotRun& run, Outputs& outputs) {
+  const ShotSettings& settings = run.shot().settings;
+  const SceneStage scenes(run);
+  const PictureStage pictures(scenes, run.shot(), outputs, run.context());
+  std::vector<CacheItem> items = run.items(first_simulated_frame(run.shot()), settings.last_frame);
+  for (CacheItem& item : pictures.items(settings.first_frame, settings.last_frame)) items.push_back(std::move(item));
+  return items;
 }
 
-void Session::prepare(Outputs& outputs) const {
+CacheUse& Session::prepare(Outputs& outputs, const ShotRun& run) {
   require_writable(outputs.folder());
   sweep_temporaries(outputs.folder());
-  outputs.set_settings(snapshot(shot_));
-}
-
-CacheUse& Session::claim(const std::vector<CacheItem>& items) {
-  if (!use_) use_.emplace(cache_, shot_.path, shot_.output.directory);
-  use_->claim(items);
+  outputs.set_settings(snapshot(run));
+  use_.emplace(cache_, shot_.path, shot_.output.directory);
+  use_->claim(items(run, outputs));
   return *use_;
 }
 
+double Session::cache_limit() const {
+  if (options_.cache_limit_gb >= 0) return options_.cache_limit_gb * 1e9;
+  // A cache that others share is theirs too: it is cut on request only.
+  return options_.cache.empty() ? shot_.output.cache_limit_gb * 1e9 : 0;
+}
+
 void Session::keep_within_limit() {
-  const double limit = shot_.output.cache_limit_gb * 1e9;
+  const double limit = cache_limit();
   if (limit == 0 || static_cast<double>(cache_.stored_bytes() - stored_at_last_cut_) < limit / 16) return;
   stored_at_last_cut_ = cache_.stored_bytes();
   cut_cache(cache_, limit);
@@ -96,16 +108,22 @@ RunReport Session::report(const std::string& command, const ShotRun& run) const 
   report.threads = threads_.count();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   report.bodies = report_bodies(run);
-  report.simulation = run.counts();
+  report.simulation = run.counts(frames_.last);
   report.stages = times_.entries();
   return report;
 }
 
 void Session::finish(const RunReport& report) {
   console_.end();
+  if (const double limit = cache_limit(); limit > 0 && cache_.stored_bytes() > 0) {
+    cut_cache(cache_, limit);
+    if (const double bytes = cache_size(cache_); bytes > limit)
+      console_.warn(
+          fmt::format("{}: the results of this shot that the cache holds need {}, more than its limit of {}; "
+                      "none of them was removed. Raise --cache-limit or output.cache_limit.",
+                      cache_.folder(), format_bytes(bytes), format_bytes(limit)));
+  }
   use_.reset();
-  if (shot_.output.cache_limit_gb > 0 && cache_.stored_bytes() > 0)
-    cut_cache(cache_, shot_.output.cache_limit_gb * 1e9);
   const std::filesystem::path folder(shot_.output.directory);
   write_file((folder / (shot_.settings.name + ".resolved.toml")).string(), to_toml(shot_));
   write_file((folder / (shot_.settings.name + ".report.json")).string(), to_json(report) + "\n");

@@ -53,13 +53,16 @@ class Session {
   /// The same with threads of their own, for work beside that of `context`.
   const RunContext& context_beside() const { return context_beside_; }
 
-  /// Before files are made: throws work_error if the folder cannot be written, removes what killed runs left there, and
-  /// tells the manifest the settings that its files are made with.
-  void prepare(Outputs& outputs) const;
-  /// Tells the cache what this run needs, for as long as the session lives.
-  CacheUse& claim(const std::vector<CacheItem>& items);
+  /// Before files are made: throws work_error if the folder cannot be written, removes what killed runs left there,
+  /// tells the manifest the settings that its files are made with, and the cache what the shot needs, for as long as
+  /// the session lives.
+  CacheUse& prepare(Outputs& outputs, const ShotRun& run);
+  /// Everything that the cache keeps for the shot, pictures included.
+  static std::vector<CacheItem> items(const ShotRun& run, Outputs& outputs);
   /// Cuts the cache to its limit if it has grown by much since the last time.
   void keep_within_limit();
+  /// Bytes; 0: none.
+  double cache_limit() const;
 
   /// Fills in what every report has; the caller adds counts and files.
   RunReport report(const std::string& command, const ShotRun& run) const;

@@ -12,8 +12,7 @@ int run_simulate(const ShotOptions& options) {
   const FrameSpan frames = session.frames();
   ShotRun run(session.shot(), session.context());
   Outputs outputs(session.shot().output.directory, session.shot().settings.name, session.context().log);
-  session.prepare(outputs);
-  session.claim(run.items(first_simulated_frame(session.shot()), frames.last));
+  session.prepare(outputs, run);
   outputs.note_simulation();
   session.console().begin("frames", frames.count());
   for (int frame = frames.first; frame <= frames.last; ++frame) {

@@ -21,6 +21,8 @@ const char* word_of(Condition condition) {
       return "missing";
     case Condition::Damaged:
       return "damaged";
+    case Condition::NotNeeded:
+      return "not needed";
   }
   return "";
 }
@@ -72,7 +74,7 @@ int run_status(const StatusOptions& options) {
   const std::vector<StageStatus> statuses = find_status(shot, outputs, session.context());
   const bool done = std::all_of(statuses.begin(), statuses.end(), [](const StageStatus& s) { return s.done(); });
   const double bytes = cache_size(session.context().cache);
-  const double limit = shot.output.cache_limit_gb * 1e9;
+  const double limit = session.cache_limit();
   if (options.shot.json) {
     nlohmann::ordered_json stages = nlohmann::ordered_json::array();
     for (const StageStatus& status : statuses) stages.push_back(to_json(status));

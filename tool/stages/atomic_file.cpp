@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -21,21 +22,32 @@ namespace {
 
 constexpr std::string_view kTemporaryEnding = ".part";
 
+std::string host_name() {
+  char host[256] = "host";
+  ::gethostname(host, sizeof host - 1);
+  return host;
+}
+
+/// ".NAME.HOST.PID.N.part" of any host.
+bool is_temporary_name(const std::string& name) {
+  static const std::regex form(R"(\..+\.[^/]+\.[0-9]+\.[0-9]+\.part)");
+  return std::regex_match(name, form);
+}
+
 std::string advice(int code) {
-  if (code == ENOSPC || code == EDQUOT) return "Free some space or choose another folder with --output.";
+  if (code == ENOSPC || code == EDQUOT)
+    return "Free some space, or choose another folder with --output (--cache, if it is the cache).";
   if (code == EACCES || code == EROFS || code == EPERM)
-    return "Accepted: a folder that can be written. Choose one with --output DIR.";
-  return "Check the path, or choose another folder with --output.";
+    return "Accepted: a folder that can be written. Choose one with --output DIR (--cache DIR, if it is the cache).";
+  return "Check the path, or choose another folder with --output (--cache, if it is the cache).";
 }
 
 /// A name in the same folder that nobody else uses and that no pattern of the outputs matches.
 std::string temporary_name(const std::string& path) {
   static std::atomic<int> counter{0};
-  char host[256] = "host";
-  ::gethostname(host, sizeof host - 1);
   const fs::path p(path);
   const std::string name =
-      fmt::format(".{}.{}.{}.{}{}", p.filename().string(), host, ::getpid(), ++counter, kTemporaryEnding);
+      fmt::format(".{}.{}.{}.{}{}", p.filename().string(), host_name(), ::getpid(), ++counter, kTemporaryEnding);
   return (p.parent_path() / name).string();
 }
 
@@ -50,11 +62,17 @@ AtomicFile::AtomicFile(std::string path, Writer writer) : path_(std::move(path))
   const std::string folder = folder_of(path_).string();
   make_folder(folder);
   if (writer == Writer::Ours) descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
-  if (descriptor_ >= 0) return;
-  temporary_ = temporary_name(path_);
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail("cannot be created");
-  ::flock(descriptor_, LOCK_EX | LOCK_NB);  // tells sweep_temporaries that somebody is at work
+  if (descriptor_ >= 0) {
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // tells sweep_temporaries that somebody is at work
+    return;
+  }
+  do {  // until no sweep came between making and locking it
+    if (descriptor_ >= 0) ::close(descriptor_);
+    temporary_ = temporary_name(path_);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) fail("cannot be created");
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  } while (::access(temporary_.c_str(), F_OK) != 0);
 }
 
 AtomicFile::~AtomicFile() {
@@ -160,7 +178,7 @@ int sweep_temporaries(const std::string& folder) {
   std::error_code problem;
   for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
     const std::string name = entry->path().filename().string();
-    if (!name.starts_with('.') || !name.ends_with(kTemporaryEnding)) continue;
+    if (!is_temporary_name(name)) continue;
     const int descriptor = ::open(entry->path().c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor < 0) continue;
     const auto lock = FileLock::try_adopt(descriptor, FileLock::Sharing::Exclusive);

@@ -85,11 +85,24 @@ auto at_field(const Origin& origin, const std::string& field, Work work) {
 
 }  // namespace
 
+namespace {
+
+StageKey mesh_key(const SurfaceMesh& mesh) {
+  KeyHasher key("mesh 1");
+  key.add(mesh.positions).add(mesh.triangles);
+  for (const Vec2& at : mesh.texture_coordinates) key.add(at.x()).add(at.y());
+  const PolygonList& polygons = mesh.polygons;
+  key.add(polygons.offsets).add(polygons.corner_vertices).add(polygons.corner_textures).add(polygons.polygon_groups);
+  for (const VertexGroup& group : mesh.groups) key.add(group.name).add(group.vertices);
+  return key.key();
+}
+
+}  // namespace
+
 LoadedBody load_body(const BodySettings& body, const RunContext& context) {
   const ScopedStage stage(context.times, "load");
   const std::string field = fmt::format("body.{}.mesh", body.name);
   LoadedBody loaded;
-  loaded.file_checksum = at_field(body.mesh_origin, field, [&] { return hash_bytes(read_file(body.mesh)); });
   loaded.file_mesh = at_field(body.mesh_origin, field, [&] { return import_mesh(body.mesh, context.log); });
   const MeshFacts facts = check_mesh(loaded.file_mesh);
   loaded.facts = describe(facts);
@@ -97,6 +110,7 @@ LoadedBody load_body(const BodySettings& body, const RunContext& context) {
   if (loaded.file_mesh.triangles.empty())
     throw input_error(fmt::format("{}: {}: no usable triangle is left.\n  Accepted: a surface that encloses a volume.",
                                   to_string(body.mesh_origin), body.mesh));
+  loaded.file_key = mesh_key(loaded.file_mesh);
   loaded.placement = at_field(body.mesh_origin, field, [&] { return place(loaded.file_mesh, placement_params(body)); });
   loaded.surface = loaded.file_mesh;
   apply(loaded.placement, loaded.surface);
@@ -236,8 +250,11 @@ void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, c
   add(key, find_material(shot, body.material).physics);
   for (std::size_t i = 0; i < body.regions.size(); ++i) {
     const RegionSettings& region = body.regions[i];
-    for (const SelectionTerm& term : region.select.terms) add(key, term);
-    key.add(select_or_fail(region.select, surface, region.origin, region_field(body, i)));
+    select_or_fail(region.select, surface, region.origin, region_field(body, i));
+    for (const SelectionTerm& term : region.select.terms) {
+      add(key, term);
+      key.add(select_points({{term}}, surface));
+    }
     key.add(region.material.has_value()).add(region.stiffness.value_or(0.0));
     if (region.material) add(key, find_material(shot, *region.material).physics);
   }

@@ -20,7 +20,7 @@ struct LoadedBody {
   Placement placement;
   std::vector<std::string> facts;  ///< what check and repair found, one line each
   StageKey key;                    ///< of surface.positions and surface.triangles
-  StageKey file_checksum;          ///< of the mesh file's bytes
+  StageKey file_key;               ///< of all that the mesh file says, before placement
 };
 
 /// Reads, checks, repairs and places the mesh of a body. Throws input_error.

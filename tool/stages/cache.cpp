@@ -63,6 +63,12 @@ void mark_used(const std::string& path) {
   ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);
 }
 
+/// A file that outputs link to keeps its date: it is theirs too. Removing it would free nothing anyway.
+void mark_file_used(const std::string& path) {
+  std::error_code none;
+  if (fs::hard_link_count(path, none) <= 1) mark_used(path);
+}
+
 }  // namespace
 
 Cache::Cache(std::string folder, Storing storing, const Log& log)
@@ -76,11 +82,34 @@ std::string Cache::format_folder() const {
 
 void Cache::say_older_formats() const {
   std::error_code none;
-  if (fs::exists(format_folder(), none) || !fs::is_directory(folder_, none) || fs::is_empty(folder_, none)) return;
+  if (fs::exists(format_folder(), none) || older_results(folder_).empty()) return;
   log_.warn(
       fmt::format("{}: holds results of another format; this softreel reads format {}, so they are computed again. "
                   "softreel clean removes the old ones.",
                   folder_, kCacheFormat));
+}
+
+std::vector<fs::path> older_results(const std::string& folder) {
+  std::vector<fs::path> folders{fs::path(folder) / "tetrahedra", fs::path(folder) / "simulation"};
+  for (int format = 1; format < kCacheFormat; ++format)
+    for (const char* stage : {"tetrahedra", "simulation", "picture"})
+      folders.push_back(fs::path(folder) / std::to_string(format) / stage);
+  std::vector<fs::path> files;
+  for (const fs::path& stage : folders) {
+    std::error_code none;
+    for (fs::directory_iterator entry(stage, none), end; !none && entry != end; entry.increment(none)) {
+      const std::string name = entry->path().filename().string();
+      const bool is_key =
+          name.size() == kChecksumSize && name.find_first_not_of("0123456789abcdef") == std::string::npos;
+      std::string magic(std::string_view("softreel cache ").size(), '\0');
+      if (is_key &&
+          std::ifstream(entry->path(), std::ios::binary)
+              .read(magic.data(), static_cast<std::streamsize>(magic.size())) &&
+          magic == "softreel cache ")
+        files.push_back(entry->path());
+    }
+  }
+  return files;
 }
 
 std::string Cache::path(const std::string& stage, const StageKey& key) const {
@@ -200,18 +229,22 @@ Cache::Produced Cache::produce(const std::string& stage, const StageKey& key, co
   return result;
 }
 
-StageKey Cache::store_file(const std::string& extension, const Bytes& bytes) const {
-  const StageKey checksum = hash_bytes(bytes);
+Cache::StoredFile Cache::store_file(const std::string& extension, const Bytes& bytes) const {
+  StoredFile stored{hash_bytes(bytes), false};
   store_or_say([&] {
-    const std::string target = file_path(extension, checksum);
+    const std::string target = file_path(extension, stored.checksum);
     std::error_code none;
     if (fs::is_regular_file(target, none) && fs::file_size(target, none) == bytes.size() &&
-        hash_bytes(read_file(target)) == checksum)
-      return mark_used(target);
-    write_file(target, bytes);
-    stored_bytes_ += static_cast<std::int64_t>(bytes.size());
+        hash_bytes(read_file(target)) == stored.checksum) {
+      mark_file_used(target);
+    } else {
+      if (fs::is_directory(target, none)) fs::remove_all(target, none);  // it stands in the way
+      write_file(target, bytes);
+      stored_bytes_ += static_cast<std::int64_t>(bytes.size());
+    }
+    stored.is_there = true;
   });
-  return checksum;
+  return stored;
 }
 
 std::optional<Bytes> Cache::load_file(const std::string& extension, const StageKey& checksum) const {
@@ -221,7 +254,7 @@ std::optional<Bytes> Cache::load_file(const std::string& extension, const StageK
   try {
     Bytes bytes = read_file(source);
     if (hash_bytes(bytes) == checksum) {
-      mark_used(source);
+      mark_file_used(source);
       return bytes;
     }
     say_damage(source, "its checksum does not fit");

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -25,6 +26,9 @@ namespace softreel {
 inline constexpr int kCacheFormat = 2;
 
 using Bytes = std::vector<std::uint8_t>;
+
+/// Files in a cache folder that softreel stored in older formats.
+std::vector<std::filesystem::path> older_results(const std::string& folder);
 
 class Cache {
  public:
@@ -61,8 +65,12 @@ class Cache {
   /// The right to make a result; nothing while another process has it.
   std::optional<FileLock> try_claim(const std::string& stage, const StageKey& key) const;
 
-  /// Stores a finished file under its checksum, which is returned; a no-op if it is there.
-  StageKey store_file(const std::string& extension, const Bytes& bytes) const;
+  struct StoredFile {
+    StageKey checksum;
+    bool is_there = false;  ///< false if it could not be stored
+  };
+  /// Stores a finished file under its checksum; a no-op if it is there, whole.
+  StoredFile store_file(const std::string& extension, const Bytes& bytes) const;
   /// The bytes of a finished file, or nothing if it is not there or damaged (which is said).
   std::optional<Bytes> load_file(const std::string& extension, const StageKey& checksum) const;
   std::string file_path(const std::string& extension, const StageKey& checksum) const;

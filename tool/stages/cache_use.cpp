@@ -37,25 +37,42 @@ fs::path real(const std::string& path) {
 
 struct Use {
   fs::path file;
-  std::string owner, shot_path;
+  std::string owner, shot_path, host;
   std::set<CacheItem> items, released;
   bool running = false;
 };
 
-/// A file of uses/: the owner, the shot's path, then +ITEM and -ITEM lines.
+std::string host_name() {
+  char host[256] = "host";
+  ::gethostname(host, sizeof host - 1);
+  return host;
+}
+
+/// A file of uses/: the owner, the shot's path, the host, then +ITEM and -ITEM lines.
 Use read_use(const fs::path& file) {
   Use use;
   use.file = file;
   std::ifstream in(file);
   std::getline(in, use.owner);
   std::getline(in, use.shot_path);
+  std::getline(in, use.host);
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with('+')) use.items.insert(line.substr(1));
     if (line.starts_with('-')) use.released.insert(line.substr(1));
   }
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor >= 0) use.running = !FileLock::try_adopt(descriptor, FileLock::Sharing::Exclusive).has_value();
+  // Whatever keeps the lock from being taken, the run may still be going.
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+  use.running = descriptor < 0 || ::flock(descriptor, LOCK_EX | LOCK_NB) != 0;
+  if (descriptor >= 0) ::close(descriptor);
   return use;
+}
+
+/// A shot that was here and is here no more; one that another machine sees, or that lies on a disk which is not
+/// mounted, is not gone.
+bool is_gone(const Use& use) {
+  std::error_code none;
+  return use.host == host_name() && fs::is_directory(fs::path(use.shot_path).parent_path(), none) &&
+         !fs::exists(use.shot_path, none);
 }
 
 std::vector<Use> read_uses(const Cache& cache) {
@@ -121,19 +138,19 @@ void remove_file(const CachedFile& file, bool dry_run, CacheRemoval& removal) {
   removal.bytes += file.bytes;
 }
 
-/// Format 1 kept its results directly in the cache folder; later ones have a folder named by their number.
+/// Results of older formats: format 1 kept them directly in the cache folder; later ones have a folder named by their
+/// number. Nothing but files of ours is touched: the folder may be anybody's.
 void remove_older_formats(const Cache& cache, bool dry_run, CacheRemoval& removal) {
-  std::vector<fs::path> folders{fs::path(cache.folder()) / "tetrahedra", fs::path(cache.folder()) / "simulation"};
-  for (int format = 1; format < kCacheFormat; ++format)
-    folders.push_back(fs::path(cache.folder()) / std::to_string(format));
-  for (const fs::path& folder : folders) {
+  for (const fs::path& file : older_results(cache.folder())) {
     std::error_code none;
-    for (fs::recursive_directory_iterator entry(folder, none), end; !none && entry != end; entry.increment(none)) {
-      if (!entry->is_regular_file(none)) continue;
-      removal.files += 1;
-      removal.bytes += static_cast<double>(entry->file_size(none));
-    }
-    if (!dry_run) fs::remove_all(folder, none);
+    const auto size = fs::file_size(file, none);
+    removal.files += 1;
+    removal.bytes += none ? 0.0 : static_cast<double>(size);
+    if (dry_run) continue;
+    fs::remove(file, none);
+    fs::remove(file.parent_path(), none);  // goes if it is empty
+    if (file.parent_path().parent_path() != fs::path(cache.folder()))
+      fs::remove(file.parent_path().parent_path(), none);
   }
 }
 
@@ -172,15 +189,13 @@ std::string CacheUse::owner_id(const std::string& shot_path, const std::string& 
 CacheUse::CacheUse(const Cache& cache, const std::string& shot_path, const std::string& output_folder)
     : cache_(cache), owner_(owner_id(shot_path, output_folder)) {
   const FileLock no_removal = FileLock::take(removal_lock(cache), FileLock::Sharing::Shared);
-  char host[256] = "host";
-  ::gethostname(host, sizeof host - 1);
   std::error_code none;
   fs::create_directories(uses_folder(cache), none);
-  path_ = (uses_folder(cache) / fmt::format("{}.{}.{}{}", owner_, host, ::getpid(), kRunning)).string();
+  path_ = (uses_folder(cache) / fmt::format("{}.{}.{}{}", owner_, host_name(), ::getpid(), kRunning)).string();
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) return;  // a cache that cannot be written: nobody can remove anything either
-  ::flock(descriptor_, LOCK_EX | LOCK_NB);
-  append(fmt::format("{}\n{}\n", owner_, real(shot_path).string()));
+  ::flock(descriptor_, LOCK_EX);
+  append(fmt::format("{}\n{}\n{}\n", owner_, real(shot_path).string(), host_name()));
 }
 
 void CacheUse::append(const std::string& lines) {
@@ -205,6 +220,7 @@ void CacheUse::release(const CacheItem& item) {
 
 CacheUse::~CacheUse() {
   if (descriptor_ < 0) return;
+  const FileLock nobody_starts = FileLock::take(removal_lock(cache_));
   std::error_code none;
   remove_dead_locks(cache_);
   for (const Use& use : read_uses(cache_))  // of earlier runs of the same shot that were killed
@@ -233,22 +249,23 @@ CacheRemoval cut_cache(const Cache& cache, double limit, bool dry_run) {
   });
   for (const CachedFile& file : files) {
     if (bytes - removal.bytes <= limit) break;
-    if (claimed.count(file.item) == 0) remove_file(file, dry_run, removal);
+    if (file.bytes > 0 && claimed.count(file.item) == 0) remove_file(file, dry_run, removal);
   }
   return removal;
 }
 
-CacheRemoval clean_cache(const Cache& cache, const std::string& owner_id, bool dry_run) {
+CacheRemoval clean_cache(const Cache& cache, const std::string& owner_id, const std::vector<CacheItem>& kept,
+                         bool dry_run) {
   if (!fs::exists(cache.folder())) return {};
   const FileLock lock = FileLock::take(removal_lock(cache));
   const std::vector<Use> uses = read_uses(cache);
-  std::set<CacheItem> needed;
+  std::set<CacheItem> needed(kept.begin(), kept.end());
   for (const Use& use : uses) {
+    if (use.running) continue;
     std::error_code none;
-    if (!use.running && use.owner != owner_id && fs::exists(use.shot_path, none))
-      needed.insert(use.items.begin(), use.items.end());
-    if (!use.running && !dry_run && (use.owner == owner_id || !fs::exists(use.shot_path, none)))
-      fs::remove(use.file, none);
+    const bool remembered = use.owner != owner_id && !is_gone(use);
+    if (remembered) needed.insert(use.items.begin(), use.items.end());
+    if (!remembered && !dry_run) fs::remove(use.file, none);
   }
   add_pointed_files(cache, needed);
   needed.merge(claimed_items(cache, uses));

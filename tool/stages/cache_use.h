@@ -53,10 +53,10 @@ double cache_size(const Cache& cache);
 /// even if that is more. `dry_run`: only counts.
 CacheRemoval cut_cache(const Cache& cache, double limit, bool dry_run = false);
 
-/// Removes what neither a running job nor another shot that still exists needs: results of older versions of the
-/// owner's shot (whose present needs the caller claims), older formats, and what killed processes left. `dry_run`: only
-/// counts.
-CacheRemoval clean_cache(const Cache& cache, const std::string& owner_id, bool dry_run);
+/// Removes what neither `kept`, nor a running job, nor another shot that still exists needs: results of older versions
+/// of the owner's shot, older formats, and what killed processes left. `dry_run`: only counts.
+CacheRemoval clean_cache(const Cache& cache, const std::string& owner_id, const std::vector<CacheItem>& kept,
+                         bool dry_run);
 
 /// Removes everything that no running job claims.
 CacheRemoval empty_cache(const Cache& cache, bool dry_run);

@@ -68,10 +68,11 @@ class Pipeline {
     if (pictures_.is_kept(frame)) {
       job.source = PictureSource::Kept;
     } else if (pictures_.recall(frame, trace)) {
-      job.source = PictureSource::Recalled;
+      job.source = sent_.count(trace) > 0 ? PictureSource::Linked : PictureSource::Recalled;
     } else if (pictures_.develop(frame, trace)) {
       job.source = PictureSource::Developed;
     } else {
+      sent_.insert(trace);
       job.scene = scenes_.at(frame, run_.skin(frame, skin_request(run_.shot().render)));
       job.content = scenes_.content_key(job.scene);
       job.source = recall_equal(frame, job.content);
@@ -143,6 +144,7 @@ class Pipeline {
   CacheUse& use_;
   const FrameDone& done_;
   std::size_t depth_;
+  std::set<StageKey> sent_;    ///< trace keys of frames that this run sent to be traced; of the preparing thread
   std::set<StageKey> traced_;  ///< contents of this run
   PictureCounts counts_;
   BehindStream writer_;  ///< last: its jobs use the others

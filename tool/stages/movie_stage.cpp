@@ -69,8 +69,7 @@ std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, 
 
 bool is_movie_outdated(const Shot& shot, int first, int last, const Outputs& outputs) {
   const std::string path = outputs.path("mp4");
-  return std::filesystem::exists(path) &&
-         outputs.claimed_state(path, movie_key(shot, first, last, outputs)) != OutputState::Done;
+  return outputs.claimed_state(path, movie_key(shot, first, last, outputs)) == OutputState::Stale;
 }
 
 }  // namespace softreel

@@ -169,15 +169,21 @@ void Outputs::update(const std::function<void(Contents&)>& change) {
   make_folder(folder_);
   // The lock file holds a random text that each writer replaces: whoever finds another one reads the manifest again.
   const FileLock lock = FileLock::take(lock_path());
-  if (stored_revision() != revision_) contents_ = read();
+  if (revision_.empty() || stored_revision() != revision_) contents_ = read();
   change(contents_);
   if (!settings_id_.empty()) contents_.settings[settings_id_] = settings_;
   std::set<std::string> used{contents_.simulated, settings_id_};
   for (const auto& [name, entry] : contents_.entries) used.insert(entry.settings);
   std::erase_if(contents_.settings, [&](const auto& item) { return used.count(item.first) == 0; });
-  revision_ = fmt::format("{:08x}{:08x}", std::random_device{}(), std::random_device{}());
-  std::ofstream(lock_path(), std::ios::trunc) << revision_ << "\n";
+  // Whoever reads now, or after a kill between the two, sees a revision that nobody's contents are of.
+  store_revision("");
   write_manifest();
+  revision_ = fmt::format("{:08x}{:08x}", std::random_device{}(), std::random_device{}());
+  store_revision(revision_);
+}
+
+void Outputs::store_revision(const std::string& revision) const {
+  std::ofstream(lock_path(), std::ios::trunc) << revision << "\n";  // if that fails, the manifest is read once more
 }
 
 void Outputs::write_manifest() const {

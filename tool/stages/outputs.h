@@ -80,6 +80,7 @@ class Outputs {
   Contents read() const;
   std::string lock_path() const;
   std::string stored_revision() const;
+  void store_revision(const std::string& revision) const;
   void write_manifest() const;
   std::string manifest_path() const;
   void insert(const std::string& path, const OutputEntry& entry);

@@ -109,12 +109,20 @@ bool PictureStage::develop(int frame, const StageKey& picture) {
   if (!half) return false;
   // The display picture goes to the cache; then all files of the frame come from there, or the frame must be traced.
   const Bytes png = encode_display(*half);
-  const PictureRecord record{"png", context_.cache.store_file("png", png), linear->seconds};
-  store_picture_record(context_.cache, file_key("png", picture), record);
+  const Cache::StoredFile stored = context_.cache.store_file("png", png);
+  if (stored.is_there)
+    store_picture_record(context_.cache, file_key("png", picture), {"png", stored.checksum, linear->seconds});
   if (shot_.output.exr) return recall(frame, picture);
-  const File file = files(frame, trace_key(frame)).front();
-  outputs_.link(file.path, file.key, context_.cache.file_path("png", record.checksum), png, record.seconds);
+  place(files(frame, trace_key(frame)).front(), stored, png, linear->seconds);
   return true;
+}
+
+/// Into the output folder: as a link to the stored file if that is there and whole, else written.
+void PictureStage::place(const File& file, const Cache::StoredFile& stored, const Bytes& bytes, double seconds) {
+  if (stored.is_there)
+    outputs_.link(file.path, file.key, context_.cache.file_path(file.extension, stored.checksum), bytes, seconds);
+  else
+    outputs_.write(file.path, file.key, bytes, seconds);
 }
 
 Image PictureStage::trace(const Scene& scene) {
@@ -126,17 +134,17 @@ Image PictureStage::trace(const Scene& scene) {
 void PictureStage::keep(int frame, const StageKey& content, const Image& image, double seconds) {
   const StageKey trace = trace_key(frame);
   const auto store = [&](const std::string& extension, const Bytes& bytes) {
-    const PictureRecord record{extension, context_.cache.store_file(extension, bytes), seconds};
-    for (const StageKey& picture : {trace, content})
-      store_picture_record(context_.cache, file_key(extension, picture), record);
-    return context_.cache.file_path(extension, record.checksum);
+    const Cache::StoredFile stored = context_.cache.store_file(extension, bytes);
+    if (stored.is_there)
+      for (const StageKey& picture : {trace, content})
+        store_picture_record(context_.cache, file_key(extension, picture), {extension, stored.checksum, seconds});
+    return stored;
   };
   const Bytes half = encode_half(image);
   store(kLinear, half);
   for (const File& file : files(frame, trace)) {
     const Bytes bytes = file.extension == "exr" ? encode_exr(image) : encode_display(half);
-    const std::string stored = store(file.extension, bytes);
-    outputs_.link(file.path, file.key, stored, bytes, seconds);
+    place(file, store(file.extension, bytes), bytes, seconds);
   }
 }
 

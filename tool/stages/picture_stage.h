@@ -59,6 +59,7 @@ class PictureStage {
   void keep(int frame, const StageKey& content, const Image& image, double seconds);
 
  private:
+  void place(const File& file, const Cache::StoredFile& stored, const Bytes& bytes, double seconds);
   Bytes encode_display(const Bytes& half) const;
   StageKey file_key(const std::string& extension, const StageKey& picture) const;
 

@@ -24,7 +24,8 @@ std::set<pid_t>& children() {
   return running;
 }
 
-/// Attributes of a child that gets signals as any program does, whatever this one blocks.
+/// Attributes of a child that gets signals as any program does, whatever this one blocks, but not those of our
+/// terminal: end_processes passes Ctrl-C on, once.
 struct OpenToSignals {
   posix_spawnattr_t value;
   OpenToSignals() {
@@ -32,7 +33,7 @@ struct OpenToSignals {
     sigemptyset(&none);
     posix_spawnattr_init(&value);
     posix_spawnattr_setsigmask(&value, &none);
-    posix_spawnattr_setflags(&value, POSIX_SPAWN_SETSIGMASK);
+    posix_spawnattr_setflags(&value, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
   }
   ~OpenToSignals() { posix_spawnattr_destroy(&value); }
 };

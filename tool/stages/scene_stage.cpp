@@ -107,8 +107,12 @@ Camera SceneStage::camera(int frame) const {
 void SceneStage::load_environment() {
   const Shot& shot = run_.shot();
   if (!shot.environment_image.empty() && !environment_.image)
-    environment_.image = at_environment(
-        shot, [&] { return std::make_shared<const EnvironmentImage>(read_environment(shot.environment_image)); });
+    environment_.image = at_environment(shot, [&] {
+      auto image = std::make_shared<const EnvironmentImage>(read_environment(shot.environment_image));
+      if (hash_bytes(read_file(shot.environment_image)) != environment_checksum_)
+        throw work_error(shot.environment_image + ": changed while the shot was being rendered.\n  Run again.");
+      return image;
+    });
 }
 
 Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
@@ -152,20 +156,32 @@ void SceneStage::add_look(KeyHasher& key, const Camera& camera) const {
     add(key, ground->appearance);
     key.add(ground->checker).add(ground->checker_color);
   }
-  const RenderParams& params = shot.render.params;
-  key.add(params.width).add(params.height).add(params.samples).add(params.max_bounces).add(params.clamp);
+  key.add(shot.render.params.width).add(shot.render.params.height);
+}
+
+void SceneStage::add_tracing(KeyHasher& key) const {
+  const RenderParams& params = run_.shot().render.params;
+  key.add(params.samples).add(params.max_bounces).add(params.clamp);
   key.add(params.caustic_roughness).add(params.auxiliary);
 }
 
 StageKey SceneStage::trace_key(int frame) const {
   KeyHasher key("trace 2");
   add_look(key, camera(frame));
+  add_tracing(key);
   return key.add(run_.surfaces_key(frame, skin_request(run_.shot().render))).key();
+}
+
+StageKey SceneStage::preview_key(int frame) const {
+  KeyHasher key("preview 3");
+  add_look(key, camera(frame));
+  return key.add(run_.surfaces_key(frame, {true, 0, 1})).key();
 }
 
 StageKey SceneStage::content_key(const Scene& scene) const {
   KeyHasher key("picture 2");
   add_look(key, scene.camera);
+  add_tracing(key);
   for (const MotionMesh& mesh : scene.meshes) {
     key.add(mesh.triangles);
     for (const MotionMesh::Time& time : mesh.times) key.add(time.positions).add(time.normals);

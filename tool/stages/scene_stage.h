@@ -24,12 +24,15 @@ class SceneStage {
 
   /// Key of the picture of a frame, of what the shot says and what the surfaces depend on: known before they are.
   StageKey trace_key(int frame) const;
+  /// The same for a preview, which knows no samples, bounces and motion blur.
+  StageKey preview_key(int frame) const;
   /// Key of the picture of a scene: everything its pixels depend on, and nothing that led to it. Frames that look the
   /// same have the same one.
   StageKey content_key(const Scene& scene) const;
 
  private:
   void add_look(KeyHasher& key, const Camera& camera) const;
+  void add_tracing(KeyHasher& key) const;
   Camera camera(int frame) const;
 
   const ShotRun& run_;

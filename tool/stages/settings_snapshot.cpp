@@ -14,6 +14,7 @@ namespace {
 
 /// The entry of a snapshot that holds the shot; the others are paths of files.
 constexpr const char* kShotEntry = "shot";
+constexpr std::string_view kMeshPrefix = "mesh ";
 
 std::string absolute(const std::string& path) {
   std::error_code none;
@@ -105,15 +106,16 @@ TomlValue document_of(const SettingsSnapshot& snapshot) {
 
 }  // namespace
 
-SettingsSnapshot snapshot(const Shot& shot) {
-  Shot with_paths = shot;
+SettingsSnapshot snapshot(const ShotRun& run) {
+  Shot with_paths = run.shot();
   SettingsSnapshot snapshot;
-  for (BodySettings& body : with_paths.bodies) {
+  for (std::size_t b = 0; b < run.body_count(); ++b) {
+    BodySettings& body = with_paths.bodies[b];
     body.mesh = absolute(body.mesh);
-    snapshot[body.mesh] = checksum_of(body.mesh);
+    snapshot[std::string(kMeshPrefix) + body.mesh] = run.loaded(b).file_key;
   }
-  if (!shot.environment_image.empty()) {
-    with_paths.environment_image = absolute(shot.environment_image);
+  if (!with_paths.environment_image.empty()) {
+    with_paths.environment_image = absolute(with_paths.environment_image);
     snapshot[with_paths.environment_image] = checksum_of(with_paths.environment_image);
   }
   snapshot[kShotEntry] = to_toml(with_paths);
@@ -124,14 +126,16 @@ std::vector<FieldChange> find_changes(const SettingsSnapshot& before, const Sett
   std::vector<FieldChange> changes;
   const TomlValue old_document = document_of(before), new_document = document_of(after);
   Comparison comparison([&](const Steps& steps, const TomlValue* was, const TomlValue* is) {
-    changes.push_back({path_of(steps), was ? to_short_text(*was) : "", is ? to_short_text(*is) : "",
+    changes.push_back({path_of(steps), false, was ? to_short_text(*was) : "", is ? to_short_text(*is) : "",
                        replaced(new_document, steps, was)});
   });
   comparison.compare(old_document, new_document);
   for (const auto& [path, checksum] : after) {
     const auto was = before.find(path);
     if (path == kShotEntry || was == before.end() || was->second == checksum) continue;
-    changes.push_back({"content of " + path, was->second, checksum, std::nullopt});
+    const bool is_mesh = path.starts_with(kMeshPrefix);
+    changes.push_back({"content of " + (is_mesh ? path.substr(kMeshPrefix.size()) : path), is_mesh, was->second,
+                       checksum, std::nullopt});
   }
   return changes;
 }

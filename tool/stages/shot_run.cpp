@@ -67,10 +67,10 @@ void ShotRun::simulate(int frame) {
   for (const auto& body : bodies_) body->simulation->at(frame);
 }
 
-SimulationCounts ShotRun::counts() const {
+SimulationCounts ShotRun::counts(int last) const {
   SimulationCounts sum;
   for (const auto& body : bodies_) {
-    const SimulationCounts counts = body->simulation->counts();
+    const SimulationCounts counts = body->simulation->counts(last);
     sum.computed += counts.computed;
     sum.loaded += counts.loaded;
     sum.not_needed += counts.not_needed;

@@ -56,8 +56,8 @@ class ShotRun {
   /// The bodies' surfaces at a frame.
   std::vector<SkinnedBody> skin(int frame, const SkinRequest& request);
   SkinnedBody skin_body(std::size_t body, int frame, const SkinRequest& request);
-  /// Summed over the bodies.
-  SimulationCounts counts() const;
+  /// Summed over the bodies; of frames up to `last`.
+  SimulationCounts counts(int last) const;
 
  private:
   struct Body;

@@ -34,10 +34,10 @@ using ResultKeys = std::map<ResultName, StageKey>;
 constexpr const char* kPictures = "pictures";
 constexpr const char* kMovie = "movie";
 
-/// Keys of all results of a shot. Throws if its meshes cannot be loaded or its selections take nothing.
-ResultKeys find_keys(const Shot& shot, Outputs& outputs, const RunContext& context) {
+/// Keys of all results of a shot.
+ResultKeys find_keys(const ShotRun& run, Outputs& outputs) {
   ResultKeys keys;
-  const ShotRun run(shot, context);
+  const Shot& shot = run.shot();
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const std::string& name = run.settings(b).name;
     keys[{kTetrahedraStage, name, 0}] = run.simulation(b).filled_key();
@@ -45,7 +45,7 @@ ResultKeys find_keys(const Shot& shot, Outputs& outputs, const RunContext& conte
       keys[{kSimulationStage, name, frame}] = run.simulation(b).frame_key(frame);
   }
   const SceneStage scenes(run);
-  const PictureStage pictures(scenes, shot, outputs, context);
+  const PictureStage pictures(scenes, shot, outputs, run.context());
   for (int frame = shot.settings.first_frame; frame <= shot.settings.last_frame; ++frame)
     for (const PictureStage::File& file : pictures.files(frame, pictures.trace_key(frame)))
       keys[{kPictures, file.extension, frame}] = file.key;
@@ -61,8 +61,9 @@ class StatusFinder {
         quiet_{context.threads, no_log_, context.times, context.cache, context.cancelled} {}
 
   std::vector<StageStatus> find() {
-    keys_ = find_keys(shot_, outputs_, quiet_);
-    now_ = snapshot(shot_);
+    const ShotRun run(shot_, quiet_);
+    keys_ = find_keys(run, outputs_);
+    now_ = snapshot(run);
     for (const auto& [name, key] : keys_) {
       context_.stop_if_cancelled();
       StageStatus& status = status_of(name);
@@ -70,6 +71,7 @@ class StatusFinder {
       status.frames[condition].push_back(name.frame);
       if (condition == Condition::Stale) explain(status, name, key);
     }
+    release_unneeded();
     add_movie();
     const auto place = [](const StageStatus& status) {
       constexpr std::array kOrder{kTetrahedraStage, kSimulationStage, kPictures, kMovie};
@@ -122,7 +124,9 @@ class StatusFinder {
     }
     for (const Undone& change : changes_since(id)) {
       const auto undone = change.keys.find(name);
-      const bool matters = !change.is_known || undone == change.keys.end() || undone->second != key;
+      // The content of a picture cannot be undone, but it concerns pictures only.
+      const bool concerns = change.is_known || change.is_mesh || name.stage == kPictures;
+      const bool matters = concerns && (!change.is_known || undone == change.keys.end() || undone->second != key);
       if (matters) status.reasons[change.reason].push_back(name.frame);
     }
   }
@@ -132,6 +136,7 @@ class StatusFinder {
     StaleReason reason;
     ResultKeys keys;
     bool is_known = false;  ///< keys are; else the old file is gone
+    bool is_mesh = false;   ///< a change of a mesh file's content
   };
 
   const std::vector<Undone>& changes_since(const std::string& id) {
@@ -140,7 +145,8 @@ class StatusFinder {
     const auto before = outputs_.settings(id);
     if (!before) return changes;
     for (const FieldChange& change : find_changes(*before, now_)) {
-      Undone& undone = changes.emplace_back(Undone{{change.field, change.before, change.after}, {}, false});
+      Undone& undone =
+          changes.emplace_back(Undone{{change.field, change.before, change.after}, {}, false, change.is_mesh});
       if (!change.undone) continue;
       if (auto keys = keys_of(*change.undone)) {
         undone.keys = std::move(*keys);
@@ -152,7 +158,8 @@ class StatusFinder {
 
   std::optional<ResultKeys> keys_of(const TomlValue& document) {
     try {
-      return find_keys(parse_shot(shot_.path, document), outputs_, quiet_);
+      const Shot shot = parse_shot(shot_.path, document);
+      return find_keys(ShotRun(shot, quiet_), outputs_);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::Interrupt) throw;
       return std::nullopt;  // a mesh that is gone, say
@@ -166,6 +173,25 @@ class StatusFinder {
     std::optional<ResultKeys>& keys = past_[id];
     if (settings) keys = keys_of(parse_toml(settings->at("shot"), "the manifest's settings"));
     return keys ? &*keys : nullptr;
+  }
+
+  /// Where all pictures are there, nothing asks for the states and tetrahedra that led to them.
+  void release_unneeded() {
+    const auto is_picture = [](const StageStatus& status) { return status.stage == kPictures; };
+    if (std::none_of(statuses_.begin(), statuses_.end(), is_picture)) return;
+    for (const StageStatus& status : statuses_)
+      if (is_picture(status) && !status.done()) return;
+    for (StageStatus& status : statuses_) {
+      for (const Condition condition : {Condition::Stale, Condition::Missing}) {
+        const auto found = status.frames.find(condition);
+        if (is_picture(status) || found == status.frames.end()) continue;
+        std::vector<int>& unneeded = status.frames[Condition::NotNeeded];
+        unneeded.insert(unneeded.end(), found->second.begin(), found->second.end());
+        std::sort(unneeded.begin(), unneeded.end());
+        status.frames.erase(condition);
+      }
+      if (!is_picture(status)) status.reasons.clear();
+    }
   }
 
   void add_movie() {

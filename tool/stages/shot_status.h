@@ -1,6 +1,7 @@
 /// What of a shot is done, and why the rest is not: found from keys and checksums, without making anything.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -12,10 +13,11 @@
 namespace softreel {
 
 enum class Condition {
-  Done,     ///< stored, whole, and of the shot as it is now
-  Stale,    ///< there is one of the shot as it was
-  Missing,  ///< there is none
-  Damaged   ///< it is there, but its checksum does not fit
+  Done,      ///< stored, whole, and of the shot as it is now
+  Stale,     ///< there is one of the shot as it was
+  Missing,   ///< there is none
+  Damaged,   ///< it is there, but its checksum does not fit
+  NotNeeded  ///< there is none, and all that would be made of it is done
 };
 
 /// A field whose change makes results stale.
@@ -36,7 +38,11 @@ struct StageStatus {
   /// if another version of softreel made it.
   std::map<StaleReason, std::vector<int>> reasons;
 
-  bool done() const { return frames.size() == 1 && frames.begin()->first == Condition::Done; }
+  bool done() const {
+    return std::all_of(frames.begin(), frames.end(), [](const auto& entry) {
+      return entry.first == Condition::Done || entry.first == Condition::NotNeeded;
+    });
+  }
 };
 
 /// Reads and verifies everything that belongs to the shot's frames. `outputs`: of the shot's folder.

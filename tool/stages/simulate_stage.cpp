@@ -197,9 +197,10 @@ BodyFrame BodySimulation::simulated(int frame) {
   return result;
 }
 
-SimulationCounts BodySimulation::counts() const {
+SimulationCounts BodySimulation::counts(int last) const {
   SimulationCounts counts = counts_;
-  for (std::size_t i = 0; i < frame_keys_.size(); ++i) {
+  const auto frames = static_cast<std::size_t>(last - first_simulated_frame(shot_) + 1);
+  for (std::size_t i = 0; i < frames; ++i) {
     if (touched_[i]) continue;
     const auto seconds = context_.cache.seconds(kSimulationStage, frame_keys_[i]);
     if (!seconds) continue;

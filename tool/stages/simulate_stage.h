@@ -45,8 +45,8 @@ class BodySimulation {
   /// The body at a frame. Throws work_error naming frame, body and element or constraint if a step cannot be solved.
   const BodyFrame& at(int frame);
 
-  /// Frames that were neither computed nor loaded count as not needed if they are stored.
-  SimulationCounts counts() const;
+  /// Frames up to `last` that were neither computed nor loaded count as not needed if they are stored.
+  SimulationCounts counts(int last) const;
   /// Levels of the multigrid hierarchy; empty while no frame was computed.
   std::vector<LevelInfo> levels() const;
 

@@ -150,16 +150,22 @@ TEST_F(Status, ALimitRemovesWhatWasUsedLongestAgo) {
 TEST_F(Status, CleanOfAnOlderFormatSaysWhatItRemoved) {
   start("older");
   std::filesystem::create_directories(folder_ + "/out/.cache/simulation");
-  write_text(folder_ + "/out/.cache/simulation/0123", "softreel cache 1\n");
+  write_text(folder_ + "/out/.cache/simulation/0123456789abcdef0123456789abcdef", "softreel cache 1\n");
+  std::filesystem::create_directories(folder_ + "/out/.cache/tetrahedra");
+  write_text(folder_ + "/out/.cache/tetrahedra/notes.txt", "not ours");
   const Outcome outcome = softreel("render", "--quiet");
   EXPECT_NE(outcome.err.find("another format"), std::string::npos) << outcome.err;
   EXPECT_EQ(softreel("clean").status, 0);
   EXPECT_FALSE(exists(folder_ + "/out/.cache/simulation"));
+  EXPECT_TRUE(exists(folder_ + "/out/.cache/tetrahedra/notes.txt"))
+      << "what softreel did not make is not its to remove";
 }
 
 TEST_F(Status, CleanWithoutAnythingToGoByIsRefused) {
   EXPECT_EQ(run("softreel clean").status, 2);
   EXPECT_EQ(run("softreel clean --cache /nowhere").status, 2);
+  EXPECT_EQ(run("softreel clean --cache /nowhere --all").status, 2);
+  EXPECT_EQ(softreel("clean", "--cache-limit 0").status, 2) << "0 stands for no limit";
 }
 
 }  // namespace

@@ -158,12 +158,12 @@ TEST(Cache, GoesOnWithoutStoringAfterOneWarningUnlessStoringIsTheTask) {
 
 TEST(Cache, SaysThatItHoldsAnOlderFormatAndDoesNotReadIt) {
   const Folder folder("older");
-  write_file(folder.path + "/simulation/k", std::string("softreel cache 1\n"));
+  write_file(folder.path + "/simulation/" + std::string(32, 'a'), std::string("softreel cache 1\n"));
   int warnings = 0;
   const Log log{{}, [&](const std::string&) { ++warnings; }};
   const Cache cache(folder.path, Cache::Storing::Required, log);
   EXPECT_EQ(warnings, 1);
-  EXPECT_FALSE(cache.load("simulation", "k").has_value());
+  EXPECT_FALSE(cache.load("simulation", std::string(32, 'a')).has_value());
   cache.store("simulation", "k", {1}, 0);
   const Cache again(folder.path, Cache::Storing::Required, log);
   EXPECT_EQ(warnings, 1) << "said again although the new format is in use";

@@ -92,9 +92,7 @@ TEST_F(CacheUseTest, CleaningKeepsTheNeedsOfOtherShotsThatExist) {
     CacheUse use(cache_, folder_ + "/gone.toml", "out");
     use.claim({"simulation/2"});
   }
-  CacheUse mine(cache_, "shot.toml", "out");
-  mine.claim({"simulation/3"});
-  clean_cache(cache_, CacheUse::owner_id("shot.toml", "out"), false);
+  clean_cache(cache_, CacheUse::owner_id("shot.toml", "out"), {"simulation/3"}, false);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(has(i), i == 1 || i == 3) << i;
 }
 
@@ -106,7 +104,7 @@ TEST_F(CacheUseTest, ANewRunOfAShotReplacesWhatItNeededBefore) {
     CacheUse use(cache_, shot, "out");
     use.claim({item});
   }
-  clean_cache(cache_, "another owner", false);
+  clean_cache(cache_, "another owner", {}, false);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(has(i), i == 5) << i;
 }
 
