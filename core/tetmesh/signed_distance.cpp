@@ -5,79 +5,30 @@
 #include <functional>
 
 #include "core/base/error.h"
+#include "core/base/part.h"
 #include "core/mesh/surface_mesh.h"
+#include "core/tetmesh/narrow_band.h"
 #include "core/tetmesh/row_crossings.h"
 #include "core/tetmesh/winding_number.h"
 
-#if SOFTREEL_WITH_OPENVDB
-#include <openvdb/openvdb.h>
-#include <openvdb/tools/MeshToVolume.h>
-#endif
-
 namespace softreel {
 namespace {
-
-/// The band reaches as far as the longest lattice edge, in voxels of half the spacing: both ends of every edge that the
-/// surface cuts are in it.
-constexpr double kBandVoxels = 2.0;
-
-/// What OpenVDB is asked for: at 2 and below it leaves out its widening, and voxels within 2 of the surface are
-/// missing.
-constexpr float kMeasuredVoxels = 2.5F;
 
 /// In a hole the distance is this many voxels a unit of winding number: steep, so that it rules in the hole only.
 constexpr double kHoleSlope = 8.0 * kBandVoxels;
 
 constexpr std::int64_t kGrain = 256;
 
-/// A lattice node with its distance in units of half the spacing.
-struct KnownNode {
-  LatticeNode node;
-  double distance = 0;  // signed once it is known
-  Index nearest = -1;
-};
+/// A lattice node with its distance, which is signed once it is known; nearest is -1 beyond the band.
+using KnownNode = BandNode;
 
 #if SOFTREEL_WITH_OPENVDB
 
-/// Corners in the lattice's own coordinates, the origin subtracted in double: far from the world's origin no bit is
-/// lost in OpenVDB's floats.
-struct LatticeSpaceMesh {
-  const std::vector<Vec3>& positions;
-  const std::vector<Triangle>& triangles;
-  const LatticeFrame& frame;
-
-  std::size_t polygonCount() const { return triangles.size(); }
-  std::size_t pointCount() const { return positions.size(); }
-  std::size_t vertexCount(std::size_t /*polygon*/) const { return 3; }
-  void getIndexSpacePoint(std::size_t polygon, std::size_t corner, openvdb::Vec3d& point) const {
-    const Vec3 p =
-        (positions[static_cast<std::size_t>(triangles[polygon][corner])] - frame.origin) * (2.0 / frame.spacing);
-    point = openvdb::Vec3d(p[0], p[1], p[2]);
-  }
-};
-
-bool is_lattice_node(const openvdb::Coord& at) {
-  return ((at.x() ^ at.y()) & 1) == 0 && ((at.x() ^ at.z()) & 1) == 0;
-}
-
-/// Unsigned distances of the lattice nodes near the surface, in OpenVDB's order of voxels.
 std::vector<KnownNode> narrow_band(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                    const LatticeFrame& frame, const Threads& threads) {
+  static const auto measure = part_function<&softreel_measure_narrow_band>("openvdb", "softreel_measure_narrow_band");
   std::vector<KnownNode> band;
-  threads.run([&] {
-    const LatticeSpaceMesh mesh{positions, triangles, frame};
-    const openvdb::math::Transform::Ptr unit = openvdb::math::Transform::createLinearTransform(1.0);
-    openvdb::Int32Grid nearest(-1);
-    const openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        mesh, *unit, kMeasuredVoxels, kMeasuredVoxels, openvdb::tools::UNSIGNED_DISTANCE_FIELD, &nearest);
-    auto nearest_reader = nearest.getConstAccessor();
-    for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf)
-      for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
-        const openvdb::Coord at = voxel.getCoord();
-        if (!is_lattice_node(at)) continue;
-        band.push_back({{at.x(), at.y(), at.z()}, static_cast<double>(*voxel), nearest_reader.getValue(at)});
-      }
-  });
+  threads.run([&] { measure(positions, triangles, frame, band); });
   return band;
 }
 

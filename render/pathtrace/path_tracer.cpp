@@ -149,10 +149,11 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
 }  // namespace
 
 struct PathTracer::Parts {
-  Parts(const Threads& run_on, StageTimes& stages) : threads(run_on), times(stages), rays(run_on.count()) {}
+  Parts(const Threads& run_on, StageTimes& stages)
+      : threads(run_on), times(stages), rays(make_ray_scene(run_on.count())) {}
   const Threads& threads;
   StageTimes& times;
-  RayScene rays;
+  std::unique_ptr<RayScene> rays;
 };
 
 PathTracer::PathTracer(const Threads& threads, StageTimes& times) : parts_(std::make_unique<Parts>(threads, times)) {}
@@ -169,10 +170,10 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   Picture picture = make_picture(scene, params, ground);
   const LightSet lights(scene);
   picture.lights = &lights;
-  picture.rays = &parts_->rays;
+  picture.rays = parts_->rays.get();
   {
     const ScopedStage stage(parts_->times, "render/build");
-    parts_->rays.build(parts_->threads, picture.meshes);
+    parts_->threads.run([&] { parts_->rays->build(picture.meshes); });
   }
   const ScopedStage stage(parts_->times, "render/trace");
   Image image = empty_image(params);

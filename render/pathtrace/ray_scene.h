@@ -1,11 +1,10 @@
-/// Triangles in trees that rays are shot at; the only place that knows Embree.
+/// Triangles in trees that rays are shot at.
 #pragma once
 
 #include <limits>
 #include <memory>
 #include <vector>
 
-#include "core/base/parallel.h"
 #include "render/scene/scene.h"
 
 namespace softreel {
@@ -28,23 +27,24 @@ struct RayHit {
 /// Trees over the meshes of one frame. Queries are thread-safe.
 class RayScene {
  public:
-  /// Throws input_error if built without Embree, work_error if Embree cannot start.
-  /// threads: how many will call it and build its trees.
-  explicit RayScene(int threads);
-  ~RayScene();
+  virtual ~RayScene() = default;
 
   /// Replaces everything by trees over `meshes`, whose positions are copied. The trees depend on the meshes only: not
-  /// on earlier frames, nor on the number of threads. Throws work_error where memory is short.
-  void build(const Threads& threads, const std::vector<const MotionMesh*>& meshes);
+  /// on earlier frames, nor on the number of threads, which are those of the caller's arena (Threads::run).
+  /// Throws work_error where memory is short.
+  virtual void build(const std::vector<const MotionMesh*>& meshes) = 0;
 
   /// coherent: neighbouring calls have similar rays (a hint for speed only).
-  bool intersect(const Ray& ray, RayHit& hit, bool coherent) const;
+  virtual bool intersect(const Ray& ray, RayHit& hit, bool coherent) const = 0;
   /// Whether anything is on the ray.
-  bool occluded(const Ray& ray, bool coherent) const;
-
- private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  virtual bool occluded(const Ray& ray, bool coherent) const = 0;
 };
+
+/// threads: how many will call it and build its trees.
+/// Throws input_error if built without Embree, work_error if Embree cannot be loaded or started.
+std::unique_ptr<RayScene> make_ray_scene(int threads);
+
+/// The entry of the part, which make_ray_scene calls.
+extern "C" [[gnu::visibility("default")]] std::unique_ptr<RayScene> softreel_make_embree_scene(int threads);
 
 }  // namespace softreel

@@ -19,8 +19,12 @@ class Preview {
 };
 
 /// Opens EGL without a display (surfaceless). Throws work_error (exit 1) saying what failed and what to install.
+/// Throws input_error if EGL is not built in.
 std::unique_ptr<Preview> make_egl_preview();
 /// Draws nothing: pictures of the background colour.
 std::unique_ptr<Preview> make_null_preview();
+
+/// The entry of the part, which make_egl_preview calls.
+extern "C" [[gnu::visibility("default")]] std::unique_ptr<Preview> softreel_make_egl_preview();
 
 }  // namespace softreel

@@ -1,8 +1,4 @@
-#include "core/base/error.h"
-#include "render/preview/preview.h"
-
-#if SOFTREEL_WITH_EGL
-
+/// The only place that knows EGL and OpenGL.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,7 +9,8 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include "core/base/check.h"
+#include "core/base/error.h"
+#include "render/preview/preview.h"
 #include "render/preview/preview_shaders.h"
 #include "render/scene/camera_frame.h"
 #include "render/scene/environment_radiance.h"
@@ -373,24 +370,8 @@ DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTra
 
 }  // namespace
 
-std::unique_ptr<Preview> make_egl_preview() {
+std::unique_ptr<Preview> softreel_make_egl_preview() {
   return std::make_unique<EglPreview>();
 }
 
 }  // namespace softreel
-
-#else
-
-namespace softreel {
-
-std::unique_ptr<Preview> make_egl_preview() {
-  throw input_error(
-      "This build of softreel has no preview: it was configured with SOFTREEL_WITH_EGL=OFF or without EGL and epoxy.\n"
-      "  Accepted: a build with SOFTREEL_WITH_EGL=ON. Install libegl-dev and libepoxy-dev and configure again, or "
-      "render "
-      "with the path tracer.");
-}
-
-}  // namespace softreel
-
-#endif

@@ -1,5 +1,5 @@
-# The optional parts and the packages behind them. Each part becomes a target softreel_part_NAME (empty when off) that
-# carries the definition SOFTREEL_WITH_NAME=0|1.
+# The optional parts and the packages behind them. Each part becomes a target softreel_part_NAME, which carries its
+# libraries (none if it is off), and SOFTREEL_HAS_NAME, 0|1.
 set(SOFTREEL_PART_TABLE "")
 
 # softreel_part(NAME PACKAGE TARGETS...): decides by SOFTREEL_WITH_NAME and by whether PACKAGE was found.
@@ -16,9 +16,36 @@ function(softreel_part name found package)
   else()
     set(value 0)
   endif()
-  target_compile_definitions(softreel_part_${name} INTERFACE SOFTREEL_WITH_${name}=${value})
   set(SOFTREEL_HAS_${name} ${value} PARENT_SCOPE)
   set(SOFTREEL_PART_TABLE "${SOFTREEL_PART_TABLE}\n  ${name}: ${value}  (${package}, asked: ${wanted})" PARENT_SCOPE)
+endfunction()
+
+# softreel_add_part(OWNER NAME SOURCE file COPIES files...): the one source that includes the libraries of a part. OWNER,
+# which calls it through core/base/part.h, is compiled with SOFTREEL_WITH_NAME=0|1.
+# With SOFTREEL_LAZY_PARTS it becomes the module softreel_part_NAME.so. That needs nothing of the program: the few other
+# sources of softreel that it calls, COPIES, are compiled into it as well.
+function(softreel_add_part owner name)
+  cmake_parse_arguments(PARSE_ARGV 2 part "" "SOURCE" "COPIES")
+  target_compile_definitions(${owner} PRIVATE SOFTREEL_WITH_${name}=${SOFTREEL_HAS_${name}})
+  if(NOT SOFTREEL_HAS_${name})
+    return()
+  endif()
+  if(NOT SOFTREEL_LAZY_PARTS)
+    target_sources(${owner} PRIVATE ${part_SOURCE})
+    target_link_libraries(${owner} PRIVATE softreel_part_${name})
+    return()
+  endif()
+  string(TOLOWER "softreel_part_${name}" file)
+  set(module softreel_module_${name})
+  add_library(${module} MODULE ${part_SOURCE} ${part_COPIES})
+  set_target_properties(${module} PROPERTIES PREFIX "" OUTPUT_NAME "${file}" CXX_VISIBILITY_PRESET hidden
+                        VISIBILITY_INLINES_HIDDEN ON LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/${SOFTREEL_PART_FOLDER}")
+  target_include_directories(${module} PRIVATE "${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${module} PRIVATE softreel_part_${name} Eigen3::Eigen fmt::fmt softreel_numerics
+                        softreel_warnings)
+  target_link_options(${module} PRIVATE LINKER:--no-undefined)
+  install(TARGETS ${module} LIBRARY DESTINATION "${SOFTREEL_PART_FOLDER}")
+  add_dependencies(${owner} ${module})
 endfunction()
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
@@ -56,5 +83,5 @@ softreel_part(EGL "${egl_found}" "EGL and epoxy" OpenGL::EGL "${SOFTREEL_EPOXY}"
 
 function(softreel_print_parts)
   message(STATUS "softreel ${PROJECT_VERSION}: ${CMAKE_BUILD_TYPE}, tests ${SOFTREEL_BUILD_TESTS}, benchmarks "
-                 "${SOFTREEL_BUILD_BENCHMARKS}, sanitizers '${SOFTREEL_SANITIZE}'; parts:${SOFTREEL_PART_TABLE}")
+                 "${SOFTREEL_BUILD_BENCHMARKS}, sanitizers '${SOFTREEL_SANITIZE}', lazy parts ${SOFTREEL_LAZY_PARTS}; parts:${SOFTREEL_PART_TABLE}")
 endfunction()

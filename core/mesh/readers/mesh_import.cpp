@@ -4,42 +4,33 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
 #include <fmt/format.h>
 
+#include "core/base/part.h"
 #include "core/mesh/polygon_triangulation.h"
+#include "core/mesh/readers/assimp_reader.h"
+#include "core/mesh/readers/mesh_source.h"
 #include "core/mesh/readers/obj_reader.h"
 #include "core/mesh/readers/off_reader.h"
 #include "core/mesh/readers/ply_reader.h"
 #include "core/mesh/readers/stl_reader.h"
-#include "core/mesh/readers/text_scanner.h"
-
-#if SOFTREEL_WITH_ASSIMP
-#include <assimp/Importer.hpp>
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-#endif
 
 namespace softreel {
 namespace {
 
 namespace fs = std::filesystem;
 
-Error unusable(const std::string& path, const std::string& problem, const std::string& advice) {
-  return input_error(
-      fmt::format("{}: {}.\n  Accepted: a mesh file (.obj, .ply, .off, .stl, .gltf, .glb, .fbx, .dae, ...). {}.", path,
-                  problem, advice));
-}
-
 void require_regular_file(const std::string& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  if (!fs::exists(status)) throw unusable(path, "there is no such mesh file", "Check the path");
-  if (fs::is_directory(status)) throw unusable(path, "this is a folder, not a mesh file", "Name a file in it");
-  if (!fs::is_regular_file(status)) throw unusable(path, "this is not a regular file", "Save the mesh to a file");
-  if (fs::file_size(path, ignored) == 0) throw unusable(path, "the mesh file is empty", "Export the mesh again");
+  if (!fs::exists(status)) throw detail::unusable_file(path, "there is no such mesh file", "Check the path");
+  if (fs::is_directory(status))
+    throw detail::unusable_file(path, "this is a folder, not a mesh file", "Name a file in it");
+  if (!fs::is_regular_file(status))
+    throw detail::unusable_file(path, "this is not a regular file", "Save the mesh to a file");
+  if (fs::file_size(path, ignored) == 0)
+    throw detail::unusable_file(path, "the mesh file is empty", "Export the mesh again");
 }
 
 std::string read_bytes(const std::string& path) {
@@ -48,7 +39,7 @@ std::string read_bytes(const std::string& path) {
   std::error_code ignored;
   bytes.resize(fs::file_size(path, ignored));
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file) throw unusable(path, "the mesh file cannot be read", "Check its permissions");
+  if (!file) throw detail::unusable_file(path, "the mesh file cannot be read", "Check its permissions");
   return bytes;
 }
 
@@ -72,97 +63,9 @@ Reader own_reader(const std::string& extension) {
 
 #if SOFTREEL_WITH_ASSIMP
 
-/// Puts the meshes of an assimp scene together in the order of its nodes.
-class SceneMerger {
- public:
-  explicit SceneMerger(const aiScene& scene) : scene_(scene) {}
-
-  SurfaceMesh merge() {
-    if (scene_.mRootNode != nullptr) add_node(*scene_.mRootNode, aiMatrix4x4());
-    for (VertexGroup& group : mesh_.groups) {
-      std::sort(group.vertices.begin(), group.vertices.end());
-      group.vertices.erase(std::unique(group.vertices.begin(), group.vertices.end()), group.vertices.end());
-    }
-    if (mesh_.texture_coordinates.empty()) mesh_.polygons.corner_textures.clear();
-    if (mesh_.groups.empty()) mesh_.polygons.polygon_groups.clear();
-    return std::move(mesh_);
-  }
-
- private:
-  void add_node(const aiNode& node, const aiMatrix4x4& parent) {
-    const aiMatrix4x4 transform = parent * node.mTransformation;
-    for (unsigned m = 0; m < node.mNumMeshes; ++m) add_mesh(*scene_.mMeshes[node.mMeshes[m]], transform, node);
-    for (unsigned c = 0; c < node.mNumChildren; ++c) add_node(*node.mChildren[c], transform);
-  }
-
-  void add_mesh(const aiMesh& part, const aiMatrix4x4& transform, const aiNode& node) {
-    const auto first_vertex = static_cast<Index>(mesh_.positions.size());
-    const auto first_texture = static_cast<Index>(mesh_.texture_coordinates.size());
-    const bool has_textures = part.HasTextureCoords(0);
-    for (unsigned v = 0; v < part.mNumVertices; ++v) {
-      const aiVector3D p = transform * part.mVertices[v];
-      mesh_.positions.emplace_back(double{p.x}, double{p.y}, double{p.z});
-      if (has_textures)
-        mesh_.texture_coordinates.emplace_back(double{part.mTextureCoords[0][v].x},
-                                               double{part.mTextureCoords[0][v].y});
-    }
-    const Index group = add_names(part, node, first_vertex);
-    const bool mirrored = transform.Determinant() < 0;
-    PolygonList& polygons = mesh_.polygons;
-    for (unsigned f = 0; f < part.mNumFaces; ++f) {
-      const aiFace& face = part.mFaces[f];
-      for (unsigned k = 0; k < face.mNumIndices; ++k) {
-        const auto corner = static_cast<Index>(face.mIndices[mirrored ? face.mNumIndices - 1 - k : k]);
-        polygons.corner_vertices.push_back(first_vertex + corner);
-        polygons.corner_textures.push_back(has_textures ? first_texture + corner : -1);
-      }
-      if (detail::close_polygon(polygons)) polygons.polygon_groups.push_back(group);  // else a point or a line
-    }
-  }
-
-  /// Makes the vertices from first_vertex on members of the groups of their names; returns the first group, or -1.
-  Index add_names(const aiMesh& part, const aiNode& node, Index first_vertex) {
-    aiString material;
-    if (part.mMaterialIndex < scene_.mNumMaterials)
-      scene_.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_NAME, material);
-    Index first = -1;
-    for (const aiString& name : {node.mName, part.mName, material}) {
-      if (name.length == 0) continue;
-      const auto [found, added] = group_of_.try_emplace(name.C_Str(), static_cast<Index>(mesh_.groups.size()));
-      if (added) mesh_.groups.push_back({name.C_Str(), {}});
-      if (first < 0) first = found->second;
-      std::vector<Index>& vertices = mesh_.groups[static_cast<std::size_t>(found->second)].vertices;
-      for (auto v = first_vertex; v < static_cast<Index>(mesh_.positions.size()); ++v) vertices.push_back(v);
-    }
-    return first;
-  }
-
-  const aiScene& scene_;
-  SurfaceMesh mesh_;
-  std::map<std::string, Index> group_of_;
-};
-
 SurfaceMesh read_with_assimp(const std::string& path, const Log& log) {
-  Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
-  const aiScene* scene = nullptr;
-  std::string problem;
-  try {
-    scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
-    problem = importer.GetErrorString();
-  } catch (const std::exception& error) {
-    problem = error.what();
-  }
-  if (scene == nullptr)
-    throw unusable(path, fmt::format("the mesh cannot be read: {}", detail::trimmed(problem)),
-                   "Export it again, best as OBJ or PLY");
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m)
-    if (scene->mMeshes[m]->HasBones() || scene->mMeshes[m]->mNumAnimMeshes > 0) {
-      log.warn(fmt::format("{}: bones and shape keys are left out; the mesh is taken in its rest shape", path));
-      break;
-    }
-  return SceneMerger(*scene).merge();
+  static const auto read = part_function<&detail::softreel_read_with_assimp>("assimp", "softreel_read_with_assimp");
+  return read(path, log);
 }
 
 #else
@@ -189,16 +92,17 @@ SurfaceMesh import_mesh(const std::string& path, const Log& log) {
     mesh = read_with_assimp(path, log);
   }
   if (mesh.polygons.corner_vertices.size() > INT32_MAX || mesh.positions.size() > INT32_MAX)
-    throw unusable(path, "the mesh has more than 2^31 face corners", "Reduce it");
+    throw detail::unusable_file(path, "the mesh has more than 2^31 face corners", "Reduce it");
   if (mesh.polygons.size() == 0)
-    throw unusable(path, fmt::format("the mesh has {} vertices but no face", mesh.positions.size()),
-                   "Export it with its faces; points and lines alone cannot be filled");
+    throw detail::unusable_file(path, fmt::format("the mesh has {} vertices but no face", mesh.positions.size()),
+                                "Export it with its faces; points and lines alone cannot be filled");
   const std::int64_t dropped = triangulate_polygons(mesh);
   if (dropped > 0)
     log.warn(fmt::format("{}: {} of {} faces left out: they use vertices that are not finite numbers", path, dropped,
                          mesh.polygons.size()));
   if (mesh.triangles.empty())
-    throw unusable(path, "every face of the mesh uses vertices that are not finite numbers", "Export it again");
+    throw detail::unusable_file(path, "every face of the mesh uses vertices that are not finite numbers",
+                                "Export it again");
   return mesh;
 }
 

@@ -4,6 +4,12 @@
 
 namespace softreel::detail {
 
+Error unusable_file(const std::string& path, const std::string& problem, const std::string& advice) {
+  return input_error(
+      fmt::format("{}: {}.\n  Accepted: a mesh file (.obj, .ply, .off, .stl, .gltf, .glb, .fbx, .dae, ...). {}.", path,
+                  problem, advice));
+}
+
 Error broken_file(const MeshSource& source, const std::string& place, const std::string& problem,
                   const std::string& accepted, const std::string& advice) {
   return input_error(fmt::format("{}{}: {}.\n  Accepted: {}. {}.", source.name, place, problem, accepted, advice));

@@ -17,6 +17,9 @@ struct MeshSource {
   std::string_view bytes;
 };
 
+/// The error of a file that gives no mesh at all, whatever its format.
+Error unusable_file(const std::string& path, const std::string& problem, const std::string& advice);
+
 /// The error of a file that breaks its format. place: ":12" for a line, " (byte 80)" in a binary file, or "".
 Error broken_file(const MeshSource& source, const std::string& place, const std::string& problem,
                   const std::string& accepted, const std::string& advice);

@@ -1,0 +1,114 @@
+/// The only place that knows assimp.
+#include "core/mesh/readers/assimp_reader.h"
+
+#include <algorithm>
+#include <map>
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include "core/mesh/readers/mesh_source.h"
+#include "core/mesh/readers/text_scanner.h"
+
+namespace softreel::detail {
+namespace {
+
+/// Puts the meshes of an assimp scene together in the order of its nodes.
+class SceneMerger {
+ public:
+  explicit SceneMerger(const aiScene& scene) : scene_(scene) {}
+
+  SurfaceMesh merge() {
+    if (scene_.mRootNode != nullptr) add_node(*scene_.mRootNode, aiMatrix4x4());
+    for (VertexGroup& group : mesh_.groups) {
+      std::sort(group.vertices.begin(), group.vertices.end());
+      group.vertices.erase(std::unique(group.vertices.begin(), group.vertices.end()), group.vertices.end());
+    }
+    if (mesh_.texture_coordinates.empty()) mesh_.polygons.corner_textures.clear();
+    if (mesh_.groups.empty()) mesh_.polygons.polygon_groups.clear();
+    return std::move(mesh_);
+  }
+
+ private:
+  void add_node(const aiNode& node, const aiMatrix4x4& parent) {
+    const aiMatrix4x4 transform = parent * node.mTransformation;
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) add_mesh(*scene_.mMeshes[node.mMeshes[m]], transform, node);
+    for (unsigned c = 0; c < node.mNumChildren; ++c) add_node(*node.mChildren[c], transform);
+  }
+
+  void add_mesh(const aiMesh& part, const aiMatrix4x4& transform, const aiNode& node) {
+    const auto first_vertex = static_cast<Index>(mesh_.positions.size());
+    const auto first_texture = static_cast<Index>(mesh_.texture_coordinates.size());
+    const bool has_textures = part.HasTextureCoords(0);
+    for (unsigned v = 0; v < part.mNumVertices; ++v) {
+      const aiVector3D p = transform * part.mVertices[v];
+      mesh_.positions.emplace_back(double{p.x}, double{p.y}, double{p.z});
+      if (has_textures)
+        mesh_.texture_coordinates.emplace_back(double{part.mTextureCoords[0][v].x},
+                                               double{part.mTextureCoords[0][v].y});
+    }
+    const Index group = add_names(part, node, first_vertex);
+    const bool mirrored = transform.Determinant() < 0;
+    PolygonList& polygons = mesh_.polygons;
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      for (unsigned k = 0; k < face.mNumIndices; ++k) {
+        const auto corner = static_cast<Index>(face.mIndices[mirrored ? face.mNumIndices - 1 - k : k]);
+        polygons.corner_vertices.push_back(first_vertex + corner);
+        polygons.corner_textures.push_back(has_textures ? first_texture + corner : -1);
+      }
+      if (close_polygon(polygons)) polygons.polygon_groups.push_back(group);  // else a point or a line
+    }
+  }
+
+  /// Makes the vertices from first_vertex on members of the groups of their names; returns the first group, or -1.
+  Index add_names(const aiMesh& part, const aiNode& node, Index first_vertex) {
+    aiString material;
+    if (part.mMaterialIndex < scene_.mNumMaterials)
+      scene_.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_NAME, material);
+    Index first = -1;
+    for (const aiString& name : {node.mName, part.mName, material}) {
+      if (name.length == 0) continue;
+      const auto [found, added] = group_of_.try_emplace(name.C_Str(), static_cast<Index>(mesh_.groups.size()));
+      if (added) mesh_.groups.push_back({name.C_Str(), {}});
+      if (first < 0) first = found->second;
+      std::vector<Index>& vertices = mesh_.groups[static_cast<std::size_t>(found->second)].vertices;
+      for (auto v = first_vertex; v < static_cast<Index>(mesh_.positions.size()); ++v) vertices.push_back(v);
+    }
+    return first;
+  }
+
+  const aiScene& scene_;
+  SurfaceMesh mesh_;
+  std::map<std::string, Index> group_of_;
+};
+
+}  // namespace
+
+SurfaceMesh softreel_read_with_assimp(const std::string& path, const Log& log) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
+  const aiScene* scene = nullptr;
+  std::string problem;
+  try {
+    scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
+    problem = importer.GetErrorString();
+  } catch (const std::exception& error) {
+    problem = error.what();
+  }
+  if (scene == nullptr)
+    throw unusable_file(path, fmt::format("the mesh cannot be read: {}", trimmed(problem)),
+                        "Export it again, best as OBJ or PLY");
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m)
+    if (scene->mMeshes[m]->HasBones() || scene->mMeshes[m]->mNumAnimMeshes > 0) {
+      log.warn(fmt::format("{}: bones and shape keys are left out; the mesh is taken in its rest shape", path));
+      break;
+    }
+  return SceneMerger(*scene).merge();
+}
+
+}  // namespace softreel::detail

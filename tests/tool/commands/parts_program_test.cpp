@@ -1,0 +1,105 @@
+/// Which shared libraries a command maps, from the dynamic loader's own account: none that it does not use.
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/program.h"
+
+namespace softreel {
+namespace {
+
+using namespace softreel::testing;
+
+/// The libraries behind the parts, as the names of their files begin.
+constexpr const char* kHeavy[] = {"libassimp", "libopenvdb", "libembree", "libEGL", "libepoxy", "softreel_part_"};
+
+/// Adds the names of the files that one process mapped: what stands after the last / of "calling init: PATH" lines.
+void add_mapped(const std::string& loader_log, std::set<std::string>& names) {
+  std::istringstream lines(loader_log);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("calling init: ") != std::string::npos) names.insert(line.substr(line.rfind('/') + 1));
+}
+
+struct Mapped {
+  Outcome outcome;
+  std::set<std::string> names;
+
+  bool has(const std::string& beginning) const {
+    return std::any_of(names.begin(), names.end(), [&](const std::string& n) { return n.starts_with(beginning); });
+  }
+  /// The heavy libraries among them, by their entries in kHeavy.
+  std::set<std::string> heavy() const {
+    std::set<std::string> found;
+    for (const char* library : kHeavy)
+      if (has(library)) found.insert(library);
+    return found;
+  }
+};
+
+/// Runs softreel with `arguments` and collects what it mapped, the programs that it starts (ffmpeg) included.
+Mapped run_traced(const std::string& arguments) {
+  const std::string folder = new_folder("loader");
+  Mapped mapped;
+  mapped.outcome = run(fmt::format("export LD_DEBUG=files LD_DEBUG_OUTPUT={}/log; softreel {}", folder, arguments));
+  for (const std::string& file : files_under(folder)) add_mapped(read_text(folder + "/" + file), mapped.names);
+  EXPECT_TRUE(mapped.has("libstdc++")) << "the loader said nothing";
+  return mapped;
+}
+
+using Names = std::set<std::string>;
+
+TEST(Parts, NoneIsLoadedForHelpAndFields) {
+  for (const char* arguments : {"--help", "render --help", "fields"}) {
+    const Mapped mapped = run_traced(arguments);
+    EXPECT_EQ(mapped.outcome.status, 0) << arguments << mapped.outcome.err;
+    EXPECT_EQ(mapped.heavy(), Names()) << arguments;
+  }
+}
+
+TEST(Parts, NoneIsLoadedToCheckAShotOfAnObjOrItsStatus) {
+  const std::string folder = shot_folder("parts_check");
+  for (const char* command : {"check", "status"}) {
+    const Mapped mapped = run_traced(fmt::format("{0} {1}/shot.toml --output {1}/out", command, folder));
+    EXPECT_EQ(mapped.outcome.status, 0) << command << mapped.outcome.err;
+    EXPECT_EQ(mapped.heavy(), Names()) << command;
+  }
+}
+
+TEST(Parts, NoneIsLoadedToInspectAnObj) {
+  const std::string folder = shot_folder("parts_inspect");
+  const Mapped mapped = run_traced(fmt::format("inspect {}/sphere.obj", folder));
+  EXPECT_EQ(mapped.outcome.status, 0) << mapped.outcome.err;
+  EXPECT_EQ(mapped.heavy(), Names());
+}
+
+TEST(Parts, RenderLoadsOpenVdbForTheBodyAndEmbreeForThePicture) {
+  const std::string folder = shot_folder("parts_render");
+  const Mapped mapped = run_traced(fmt::format("render {0}/shot.toml --output {0}/out --frames 1 --quiet", folder));
+  EXPECT_EQ(mapped.outcome.status, 0) << mapped.outcome.err;
+  EXPECT_EQ(mapped.heavy(), Names({"libopenvdb", "libembree", "softreel_part_"}));
+}
+
+TEST(Parts, PreviewLoadsEglInsteadOfEmbree) {
+  const std::string folder = shot_folder("parts_preview");
+  const Mapped mapped = run_traced(fmt::format("preview {0}/shot.toml --output {0}/out --frames 1 --quiet", folder));
+  // Where no device can be opened, the part that says so is loaded all the same.
+  EXPECT_TRUE(mapped.has("softreel_part_egl")) << mapped.outcome.err;
+  EXPECT_TRUE(mapped.has("libEGL")) << mapped.outcome.err;
+  EXPECT_FALSE(mapped.has("libembree"));
+  EXPECT_FALSE(mapped.has("libassimp"));
+}
+
+TEST(Parts, OtherMeshFormatsLoadAssimpWhoseErrorsAreOurs) {
+  const std::string folder = new_folder("parts_assimp");
+  write_text(folder + "/broken.gltf", "{\"asset\":");
+  const Mapped mapped = run_traced(fmt::format("inspect {}/broken.gltf", folder));
+  EXPECT_EQ(mapped.outcome.status, 2) << "an error thrown in a part was not caught as one: " << mapped.outcome.err;
+  EXPECT_NE(mapped.outcome.err.find("broken.gltf: the mesh cannot be read"), std::string::npos) << mapped.outcome.err;
+  EXPECT_EQ(mapped.heavy(), Names({"libassimp", "softreel_part_"}));
+}
+
+}  // namespace
+}  // namespace softreel
