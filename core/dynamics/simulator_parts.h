@@ -10,7 +10,9 @@
 #include "core/dynamics/simulator.h"
 #include "core/elasticity/assembly.h"
 #include "core/elasticity/elastic_body.h"
+#include "core/elasticity/float_assembly.h"
 #include "core/elasticity/mass.h"
+#include "core/elasticity/step_terms.h"
 
 namespace softreel {
 
@@ -31,10 +33,15 @@ struct Simulator::Parts {
   BlockMatrixd matrix;
   StiffnessAssembler assembler;
   Multigrid multigrid;
+  FloatAssembler float_assembler;
+  std::vector<double> damping_stiffness;  ///< per element, s
+  double float_seconds = 0;               ///< length of step that float_ratio was found for
+  double float_ratio = 0;                 ///< see suits_float
   SimulationState state;
 
   // Reused from step to step; no result depends on what they held.
   StiffnessTerms terms;
+  StepTerms step_terms;
   std::vector<Mat3> stresses;
 
   std::size_t nodes() const { return model.mesh.nodes.size(); }
