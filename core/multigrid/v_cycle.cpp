@@ -33,7 +33,7 @@ Cycle<Scalar>::Cycle(const LatticeHierarchy& hierarchy, const MultigridParams& p
     const LatticeLevel& fine = hierarchy.levels[h];
     const BlockPattern& coarse = hierarchy.levels[h + 1].pattern;
     if (params.galerkin == GalerkinMethod::Gather)
-      levels_[h]->gather = std::make_unique<GalerkinGather<Scalar>>(fine.pattern, fine.prolongation, coarse);
+      levels_[h]->gather = std::make_unique<GalerkinGather<Scalar>>(fine.pattern, fine.prolongation, coarse, fine.rank);
     if (params.galerkin == GalerkinMethod::Stream)
       levels_[h]->stream = std::make_unique<GalerkinStream<Scalar>>(fine.pattern, fine.prolongation, coarse);
   }
