@@ -151,9 +151,12 @@ SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work) {
   }
   const double scale = norm(work.right_side);
   if (!std::isfinite(scale)) return report;
+  CoarseLag& lag = parts.coarse_lag;
+  const bool keep_coarse = lag.allows(work.h, work.pinned.held);
+  lag.usable = false;
   {
     const ScopedStage stage(parts.times, "simulate/update");
-    if (!parts.multigrid.update_in_float(work.pinned.held)) return report;
+    if (!parts.multigrid.update_in_float(work.pinned.held, keep_coarse)) return report;
   }
   const ScopedStage stage(parts.times, "simulate/solve");
   correct_translations(parts, work);
@@ -161,6 +164,9 @@ SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work) {
   for (std::size_t i = 0; i < n; ++i) residual[i] -= work.node_terms[i] * work.change[i];
   report = refine(parts, work, parts.params.tolerance * scale, residual);
   correct_translations(parts, work);
+  if (!keep_coarse) lag = {false, work.h, work.pinned.held, report.iterations, 0};
+  lag.last_iterations = report.iterations;
+  lag.usable = report.ok();
   if (scale > 0) report.residual /= scale;
   return report;
 }

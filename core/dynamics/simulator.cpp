@@ -129,6 +129,7 @@ void Simulator::set_state(SimulationState state) {
   CHECK(state.velocities.size() == parts_->nodes());
   CHECK(state.rotations.size() == parts_->body.tets.size());
   parts_->state = std::move(state);
+  parts_->coarse_lag.usable = false;
 }
 
 StepReport Simulator::step(double frame, double seconds) {

@@ -86,6 +86,7 @@ SolveReport solve_step(Simulator::Parts& parts, StepWork& work) {
     const SolveReport report = solve_step_in_float(parts, work);
     if (report.ok()) return report;
   }
+  parts.coarse_lag.usable = false;
   return solve_step_in_double(parts, work);
 }
 
@@ -134,6 +135,7 @@ StepReport Simulator::Parts::step(double frame, double seconds) {
     find_rotations(body, params.rotation, state.positions, work.rotations, threads);
   }
   report.solve = solve_step(*this, work);
+  if (frame == std::floor(frame)) coarse_lag.usable = false;
   if (report.ok()) {
     SimulationState next = advanced(*this, work);
     if (all_finite(next.positions) && all_finite(next.velocities)) {

@@ -159,13 +159,14 @@ const std::vector<Index>& Multigrid::row_of_node() const {
   return levels_->row_of_node;
 }
 
-bool Multigrid::update_in_float(std::span<const std::uint8_t> pinned) {
+bool Multigrid::update_in_float(std::span<const std::uint8_t> pinned, bool keep_coarse) {
   Levels& levels = *levels_;
   levels.usable = false;
   if (levels.hierarchy.levels.size() < 2) return false;
   levels.pinned.assign(pinned.begin(), pinned.end());
   levels.double_cycle.reset();
   levels.eliminate(pinned);
+  if (keep_coarse) return levels.float_cycle.update_finest_in_place();
   return levels.float_cycle.update_in_place(pinned);
 }
 

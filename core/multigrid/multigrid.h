@@ -76,7 +76,8 @@ class Multigrid {
 
   /// `update` from what float_matrix() holds; rows and columns of pinned nodes are eliminated first. False if
   /// correct_in_float cannot be used then: the matrix is not definite in float, or the mesh has one level only.
-  bool update_in_float(std::span<const std::uint8_t> pinned);
+  /// keep_coarse: leaves the coarse levels as the last update_in_float, with the same pins, made them.
+  bool update_in_float(std::span<const std::uint8_t> pinned, bool keep_coarse = false);
 
   /// y = A^-1 r to |r - A y| <= target, all in float, where A is float_matrix(). r, y: per mesh node.
   FloatCorrection correct_in_float(std::span<const Vec3> r, double target, int max_iterations, std::span<Vec3> y);

@@ -30,6 +30,9 @@ class Cycle {
 
   /// The same with the values that finest_matrix() holds.
   bool update_in_place(std::span<const std::uint8_t> pinned);
+  /// Takes the values that finest_matrix() holds for the finest level alone; the coarse ones, of an earlier update with
+  /// the same pins, still make a symmetric preconditioner. A tenth of the time of an update.
+  bool update_finest_in_place() { return levels_.front()->smoother->update(threads_); }
   /// The matrix of level 0: rows numbered by colour, blocks column-major.
   const BlockMatrix<Scalar>& finest_matrix() const { return levels_.front()->matrix; }
   BlockMatrix<Scalar>& finest_matrix() { return levels_.front()->matrix; }

@@ -227,6 +227,23 @@ TEST(Simulator, ContinuesAStoredStateWithTheSameBits) {
   EXPECT_EQ(whole.simulator.state().velocities, resumed.simulator.state().velocities);
 }
 
+TEST(Simulator, ContinuesAStoredFrameWithTheSameBitsAlthoughStepsKeepCoarseLevels) {
+  constexpr int kSubsteps = 4;
+  Bench whole(dragged_bar(1e6)), resumed(dragged_bar(1e6), {}, 4);
+  const auto simulate_frame = [&](Bench& bench, int frame) {
+    for (int s = 1; s <= kSubsteps; ++s)
+      ASSERT_TRUE(bench.simulator.step(frame - 1 + static_cast<double>(s) / kSubsteps, 1.0 / 96).ok());
+  };
+  for (int frame = 1; frame <= 2; ++frame) simulate_frame(whole, frame);
+  resumed.simulator.set_state(whole.simulator.state());
+  for (int frame = 3; frame <= 4; ++frame) {
+    simulate_frame(whole, frame);
+    simulate_frame(resumed, frame);
+  }
+  EXPECT_EQ(whole.simulator.state().positions, resumed.simulator.state().positions);
+  EXPECT_EQ(whole.simulator.state().velocities, resumed.simulator.state().velocities);
+}
+
 TEST(Simulator, BlamesAnElementForWhatIsNotANumber) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), 1e308}) {
     Bench bench(body_model(small_bar(), soft()));
