@@ -2,8 +2,8 @@
 ///
 /// step_benchmark [THREADS [STEPS [CUBES_ACROSS...]]] prints tab-separated values. Default: 1 thread, 48 steps after 16
 /// that are not counted, bars of 6, 9, 11 cubes across (11k, 37k, 67k tetrahedra) and of 12k and 66k in Kuhn's cut.
-/// Stages: wall time of a typical step (lower quartile), in ns a tetrahedron. Steps a second: processor time on one
-/// thread, which other jobs of a shared machine disturb least; wall time on several.
+/// Stages: wall time of a step in a typical frame (lower quartile), in ns a tetrahedron. Steps a second: processor time
+/// on one thread, which other jobs of a shared machine disturb least; wall time on several.
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -46,7 +46,7 @@ double now(const Threads& threads) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// The lower quartile: a typical step of a machine that others disturb.
+/// The lower quartile: a typical frame on a machine that others disturb.
 double typical(std::vector<double> values) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
   std::nth_element(values.begin(), place, values.end());
@@ -67,16 +67,22 @@ void time_steps(const char* cut, TetMesh mesh, int steps, const Threads& threads
   std::map<std::string, std::vector<double>> stages;
   std::vector<double> whole;
   int iterations = 0;
-  for (int k = 1; k <= kWarmUp + steps; ++k) {
+  for (int frame = 1; frame <= (kWarmUp + steps) / kSubsteps; ++frame) {
     const std::map<std::string, double> before = seconds_by_stage(times);
     const double start = now(threads);
-    const StepReport report = simulator.step(static_cast<double>(k) / kSubsteps, kSeconds);
+    int frame_iterations = 0;
+    for (int s = 1; s <= kSubsteps; ++s) {
+      const StepReport report = simulator.step(frame - 1 + static_cast<double>(s) / kSubsteps, kSeconds);
+      if (!report.ok()) throw std::runtime_error("a step of the benchmark was not solved");
+      frame_iterations += report.solve.iterations;
+    }
     const double seconds = now(threads) - start;
-    if (!report.ok()) throw std::runtime_error("a step of the benchmark was not solved");
-    if (k <= kWarmUp) continue;
-    iterations += report.solve.iterations;
-    whole.push_back(seconds);
-    for (const auto& [name, after] : seconds_by_stage(times)) stages[name].push_back(after - before.at(name));
+    if (frame <= kWarmUp / kSubsteps) continue;
+    iterations += frame_iterations;
+    // Means of a frame, as its first step makes the coarse levels that the others may keep.
+    whole.push_back(seconds / kSubsteps);
+    for (const auto& [name, after] : seconds_by_stage(times))
+      stages[name].push_back((after - before.at(name)) / kSubsteps);
   }
   fmt::print("{}\t{}\t{}", cut, tets, threads.count());
   double rest = typical(whole);
@@ -88,7 +94,8 @@ void time_steps(const char* cut, TetMesh mesh, int steps, const Threads& threads
   double lowest = 1;
   for (const Vec3& x : simulator.state().positions) lowest = std::min(lowest, x.y());
   fmt::print("\t{:.1f}\t{:.1f}\t{:.1f}\t{:.2f}\t{:.12f}\n", 1e9 / tets * rest, 1e9 / tets * typical(whole),
-             1 / typical(whole), static_cast<double>(iterations) / steps, lowest);
+             1 / typical(whole), static_cast<double>(iterations) / static_cast<double>(kSubsteps * whole.size()),
+             lowest);
 }
 
 void run(int thread_count, int steps, const std::vector<Index>& sizes) {
