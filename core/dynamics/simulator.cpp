@@ -51,8 +51,10 @@ Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params,
       matrix{stiffness_pattern(model.mesh.tets, static_cast<Index>(model.mesh.nodes.size())), {}},
       assembler(model.mesh.tets, matrix.pattern),
       multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern, params.multigrid, threads),
+      float_assembler(model.mesh.tets, body.node_elements, multigrid.float_matrix().pattern, multigrid.row_of_node()),
       stresses(model.mesh.tets.size()) {
   if (const std::string conflict = pins.find_conflict(); !conflict.empty()) throw input_error(conflict);
+  for (const ElementMaterial& material : model.materials) damping_stiffness.push_back(material.damping_stiffness);
   state.positions = model.mesh.nodes;
   state.velocities.assign(model.mesh.nodes.size(), Vec3::Zero());
   state.rotations.assign(model.mesh.tets.size(), Quaternion::Identity());
@@ -127,6 +129,7 @@ void Simulator::set_state(SimulationState state) {
   CHECK(state.velocities.size() == parts_->nodes());
   CHECK(state.rotations.size() == parts_->body.tets.size());
   parts_->state = std::move(state);
+  parts_->coarse_lag.usable = false;
 }
 
 StepReport Simulator::step(double frame, double seconds) {

@@ -10,9 +10,27 @@
 #include "core/dynamics/simulator.h"
 #include "core/elasticity/assembly.h"
 #include "core/elasticity/elastic_body.h"
+#include "core/elasticity/float_assembly.h"
 #include "core/elasticity/mass.h"
+#include "core/elasticity/step_terms.h"
 
 namespace softreel {
+
+/// How stale the coarse levels are that steps in float use: they are kept from step to step within a frame while they
+/// precondition well. Every frame starts with new ones, so that a run resumed from a stored frame has the same bits.
+struct CoarseLag {
+  bool usable = false;             ///< the coarse levels are of an earlier step of this frame
+  double seconds = 0;              ///< length of that step
+  std::vector<std::uint8_t> held;  ///< nodes that were held
+  int first_iterations = 0;        ///< of the step that made them
+  int last_iterations = 0;         ///< of the last step
+
+  /// True if the next step may keep them: the same system but for the rotations, and hardly more iterations.
+  bool allows(double step_seconds, const std::vector<std::uint8_t>& step_held) const {
+    return usable && seconds == step_seconds && held == step_held &&
+           last_iterations <= first_iterations + 1 + first_iterations / 8;
+  }
+};
 
 struct Simulator::Parts {
   Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads, const Log& its_log,
@@ -31,10 +49,17 @@ struct Simulator::Parts {
   BlockMatrixd matrix;
   StiffnessAssembler assembler;
   Multigrid multigrid;
+  FloatAssembler float_assembler;
+  std::vector<double> damping_stiffness;  ///< per element, s
+  double float_seconds = 0;               ///< length of step that float_ratio was found for
+  double float_ratio = 0;                 ///< see suits_float
   SimulationState state;
+
+  CoarseLag coarse_lag;
 
   // Reused from step to step; no result depends on what they held.
   StiffnessTerms terms;
+  StepTerms step_terms;
   std::vector<Mat3> stresses;
 
   std::size_t nodes() const { return model.mesh.nodes.size(); }

@@ -10,10 +10,9 @@
 #include <fmt/format.h>
 
 #include "core/dynamics/linear_system.h"
-#include "core/dynamics/simulator_parts.h"
+#include "core/dynamics/step_work.h"
 
 namespace softreel {
-namespace {
 
 bool all_finite(std::span<const Vec3> vectors) {
   for (const Vec3& v : vectors)
@@ -21,15 +20,7 @@ bool all_finite(std::span<const Vec3> vectors) {
   return true;
 }
 
-/// What one step works on beside the body itself.
-struct StepWork {
-  double h;
-  PinnedNodes pinned;
-  std::vector<ActivePull> pulls;
-  std::vector<Quaternion> rotations;
-  std::vector<Vec3> right_side, change;
-  std::vector<double> node_terms;  ///< mass part of S
-};
+namespace {
 
 /// S, from elements, masses and pulls; on the way the stresses.
 void assemble_step(Simulator::Parts& parts, StepWork& work) {
@@ -38,9 +29,6 @@ void assemble_step(Simulator::Parts& parts, StepWork& work) {
   for (std::size_t e = 0; e < shares.size(); ++e) shares[e] = h * h + h * parts.model.materials[e].damping_stiffness;
   find_stiffness_terms(parts.body, parts.state.positions, work.rotations, shares, Curvature::None, parts.terms,
                        parts.stresses, parts.threads);
-  work.node_terms.resize(parts.nodes());
-  for (std::size_t i = 0; i < parts.nodes(); ++i)
-    work.node_terms[i] = parts.masses.mass[i] + h * parts.masses.damping[i];
   parts.assembler.assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
   for (const ActivePull& pull : work.pulls) add_pull_stiffness(pull, parts.state.positions, h * h, parts.matrix);
 }
@@ -51,10 +39,8 @@ void find_right_side(Simulator::Parts& parts, StepWork& work) {
   const std::size_t n = parts.nodes();
   work.right_side.resize(n);
   parts.gather_all_forces(state.positions, work.pulls, work.right_side);
-  std::vector<Vec3> velocities = state.velocities, product(n);
-  for (std::size_t i = 0; i < n; ++i)
-    if (work.pinned.held[i] != 0) velocities[i] = (work.pinned.targets[i] - state.positions[i]) / work.h;
-  multiply(parts.matrix, velocities, product, parts.threads);
+  std::vector<Vec3> product(n);
+  multiply(parts.matrix, work.velocities, product, parts.threads);
   for (std::size_t i = 0; i < n; ++i) {
     if (work.pinned.held[i] != 0)
       work.right_side[i].setZero();
@@ -63,25 +49,13 @@ void find_right_side(Simulator::Parts& parts, StepWork& work) {
   }
 }
 
-/// Moves each free piece (no pin, no pull) as a whole by what its total right side still asks for. Exact, because K
-/// has no force against a translation: so the momentum of a free piece is right to round-off at any solver tolerance,
-/// and its free fall needs no iteration.
-void correct_translations(const Simulator::Parts& parts, StepWork& work) {
-  const std::vector<std::uint8_t> held = parts.held_pieces(work.pinned, work.pulls);
-  std::vector<Vec3> missing(held.size(), Vec3::Zero());
-  std::vector<double> mass(held.size(), 0);
-  for (std::size_t i = 0; i < parts.nodes(); ++i) {
-    const auto piece = static_cast<std::size_t>(parts.pieces.of_node[i]);
-    missing[piece] += work.right_side[i] - work.node_terms[i] * work.change[i];
-    mass[piece] += work.node_terms[i];
+/// The system in double: for tolerances that float does not reach, and where it failed.
+SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
+  {
+    const ScopedStage stage(parts.times, "simulate/assemble");
+    assemble_step(parts, work);
+    find_right_side(parts, work);
   }
-  for (std::size_t i = 0; i < parts.nodes(); ++i) {
-    const auto piece = static_cast<std::size_t>(parts.pieces.of_node[i]);
-    if (held[piece] == 0 && mass[piece] > 0) work.change[i] += missing[piece] / mass[piece];
-  }
-}
-
-SolveReport solve_step(Simulator::Parts& parts, StepWork& work) {
   work.change.assign(parts.nodes(), Vec3::Zero());
   if (!all_finite(work.right_side)) return {SolveStatus::Breakdown, 0, 0, false};
   {
@@ -98,6 +72,22 @@ SolveReport solve_step(Simulator::Parts& parts, StepWork& work) {
                                                    0.0, parts.params.max_iterations);
   correct_translations(parts, work);
   return report;
+}
+
+SolveReport solve_step(Simulator::Parts& parts, StepWork& work) {
+  const std::size_t n = parts.nodes();
+  work.velocities = parts.state.velocities;
+  work.node_terms.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    work.node_terms[i] = parts.masses.mass[i] + work.h * parts.masses.damping[i];
+    if (work.pinned.held[i] != 0) work.velocities[i] = (work.pinned.targets[i] - parts.state.positions[i]) / work.h;
+  }
+  if (suits_float(parts, work.h)) {
+    const SolveReport report = solve_step_in_float(parts, work);
+    if (report.ok()) return report;
+  }
+  parts.coarse_lag.usable = false;
+  return solve_step_in_double(parts, work);
 }
 
 /// The state after the step; held nodes reach their targets exactly.
@@ -117,8 +107,23 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
 
 }  // namespace
 
+void correct_translations(const Simulator::Parts& parts, StepWork& work) {
+  const std::vector<std::uint8_t> held = parts.held_pieces(work.pinned, work.pulls);
+  std::vector<Vec3> missing(held.size(), Vec3::Zero());
+  std::vector<double> mass(held.size(), 0);
+  for (std::size_t i = 0; i < parts.nodes(); ++i) {
+    const auto piece = static_cast<std::size_t>(parts.pieces.of_node[i]);
+    missing[piece] += work.right_side[i] - work.node_terms[i] * work.change[i];
+    mass[piece] += work.node_terms[i];
+  }
+  for (std::size_t i = 0; i < parts.nodes(); ++i) {
+    const auto piece = static_cast<std::size_t>(parts.pieces.of_node[i]);
+    if (held[piece] == 0 && mass[piece] > 0) work.change[i] += missing[piece] / mass[piece];
+  }
+}
+
 StepReport Simulator::Parts::step(double frame, double seconds) {
-  StepWork work{seconds, pins.at(frame), pulls_at(frame), state.rotations, {}, {}, {}};
+  StepWork work{seconds, pins.at(frame), pulls_at(frame), state.rotations, {}, {}, {}, {}};
   StepReport report;
   if (!work.pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
@@ -129,12 +134,8 @@ StepReport Simulator::Parts::step(double frame, double seconds) {
     const ScopedStage stage(times, "simulate/rotate");
     find_rotations(body, params.rotation, state.positions, work.rotations, threads);
   }
-  {
-    const ScopedStage stage(times, "simulate/assemble");
-    assemble_step(*this, work);
-    find_right_side(*this, work);
-  }
   report.solve = solve_step(*this, work);
+  if (frame == std::floor(frame)) coarse_lag.usable = false;
   if (report.ok()) {
     SimulationState next = advanced(*this, work);
     if (all_finite(next.positions) && all_finite(next.velocities)) {

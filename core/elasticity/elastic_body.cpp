@@ -10,23 +10,16 @@ namespace {
 /// Elements and nodes per chunk: some ten microseconds of work each; elements a multiple of the lanes.
 constexpr std::int64_t kElementGrain = 1024;
 constexpr std::int64_t kNodeGrain = 1024;
-static_assert(kElementGrain % kRotationLanes == 0);
+static_assert(kElementGrain % kRotationLanes == 0 && kElementGrain % kElementLanes == 0);
 
-/// The matrix that the rotation of element e is extracted from.
-Mat3 rotation_source(const ElasticBody& body, RotationMethod method, std::span<const Vec3> positions, std::size_t e) {
-  const TetNodes nodes = nodes_of(body.tets[e], positions);
-  return method == RotationMethod::Consistent ? deformation_gradient(body.shapes[e].gradients, nodes)
-                                              : element_moment(nodes_of(body.tets[e], body.rest_positions), nodes);
-}
-
-/// One batch of elements [begin, end), at most kRotationLanes; lanes without an element repeat the last one.
-void find_batch(const ElasticBody& body, RotationMethod method, std::span<const Vec3> positions,
-                std::span<Quaternion> rotations, std::size_t begin, std::size_t end) {
+/// Eq. (3) on one batch of elements [begin, end), at most kRotationLanes; lanes without an element repeat the last one.
+void find_batch(const ElasticBody& body, std::span<const Vec3> positions, std::span<Quaternion> rotations,
+                std::size_t begin, std::size_t end) {
   MatrixLanes matrices;
   QuaternionLanes quaternions;
   for (std::size_t lane = 0; lane < kRotationLanes; ++lane) {
     const std::size_t e = std::min(begin + lane, end - 1);
-    const Mat3 A = rotation_source(body, method, positions, e);
+    const Mat3 A = element_moment(nodes_of(body.tets[e], body.rest_positions), nodes_of(body.tets[e], positions));
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 3; ++c) matrices.entries[3 * r + c][lane] = A(r, c);
     const Quaternion& guess = rotations[e];
@@ -71,6 +64,7 @@ ElasticBody make_elastic_body(const TetMesh& mesh, const std::vector<ElementMate
     body.shapes.push_back(find_element_shape(nodes_of(mesh.tets[e], mesh.nodes)));
     body.laws.push_back({materials[e].lame_lambda(), materials[e].lame_mu(), dilatation == Dilatation::Capped});
   }
+  body.batches = make_element_batches(body.tets, body.shapes, body.laws);
   body.node_elements = gather_node_elements(mesh.tets, static_cast<Index>(mesh.nodes.size()));
   return body;
 }
@@ -81,10 +75,20 @@ void find_rotations(const ElasticBody& body, RotationMethod method, std::span<co
     std::fill(rotations.begin(), rotations.end(), Quaternion::Identity());
     return;
   }
+  if (method == RotationMethod::Consistent) {
+    constexpr std::int64_t kBatchGrain = kElementGrain / kElementLanes;
+    const std::span<const ElementBatch> batches = body.batches;
+    threads.for_chunks(static_cast<std::int64_t>(batches.size()), kBatchGrain,
+                       [&](std::int64_t begin, std::int64_t end) {
+                         find_consistent_rotations(batches, positions, rotations, static_cast<std::size_t>(begin),
+                                                   static_cast<std::size_t>(end));
+                       });
+    return;
+  }
   threads.for_chunks(static_cast<std::int64_t>(body.tets.size()), kElementGrain,
                      [&](std::int64_t begin, std::int64_t end) {
                        for (std::int64_t e = begin; e < end; e += kRotationLanes)
-                         find_batch(body, method, positions, rotations, static_cast<std::size_t>(e),
+                         find_batch(body, positions, rotations, static_cast<std::size_t>(e),
                                     static_cast<std::size_t>(std::min<std::int64_t>(e + kRotationLanes, end)));
                      });
 }

@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/base/types.h"
 #include "core/elasticity/element.h"
+#include "core/elasticity/element_lanes.h"
 #include "core/elasticity/material.h"
 #include "core/tetmesh/tet_mesh.h"
 
@@ -36,8 +37,9 @@ NodeElements gather_node_elements(const std::vector<Tet>& tets, Index nodes);
 struct ElasticBody {
   std::vector<Vec3> rest_positions;  ///< X, nodes x 3, m
   std::vector<Tet> tets;
-  std::vector<ElementShape> shapes;  ///< per element
-  std::vector<ElasticLaw> laws;      ///< per element
+  std::vector<ElementShape> shapes;   ///< per element
+  std::vector<ElasticLaw> laws;       ///< per element
+  std::vector<ElementBatch> batches;  ///< shapes and laws again, in lanes
   NodeElements node_elements;
 };
 

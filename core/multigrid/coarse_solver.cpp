@@ -1,6 +1,7 @@
 #include "core/multigrid/coarse_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/check.h"
@@ -80,6 +81,33 @@ double dot(const double* a, const double* b, std::int64_t n) {
   return sum.sum() + tail;
 }
 
+/// Dot products of three rows with three rows, 9 sums in 4 lanes each: 6 loads for 9 multiply-adds. entry (r, c) of the
+/// result is a_r . b_c.
+std::array<double, 9> dot_rows(const std::array<double*, 3>& a, const std::array<double*, 3>& b, std::int64_t n) {
+  using Lanes = Eigen::Array4d;
+  using Map = Eigen::Map<const Lanes>;
+  std::array<Lanes, 9> sums;
+  sums.fill(Lanes::Zero());
+  std::int64_t k = 0;
+  for (; k + 4 <= n; k += 4) {
+    const Lanes b0 = Map(b[0] + k), b1 = Map(b[1] + k), b2 = Map(b[2] + k);
+    for (std::size_t r = 0; r < 3; ++r) {
+      const Lanes a_r = Map(a[r] + k);
+      sums[3 * r] += a_r * b0;
+      sums[3 * r + 1] += a_r * b1;
+      sums[3 * r + 2] += a_r * b2;
+    }
+  }
+  std::array<double, 9> result;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) {
+      double tail = 0;
+      for (std::int64_t t = k; t < n; ++t) tail += a[r][t] * b[c][t];
+      result[3 * r + c] = sums[3 * r + c].sum() + tail;
+    }
+  return result;
+}
+
 }  // namespace
 
 double factor_work(const BlockPattern& pattern) {
@@ -124,17 +152,37 @@ bool CoarseSolver::factor(const BlockMatrix<Scalar>& matrix, double noise) {
             row(static_cast<std::size_t>(3 * p + r))[3 * q + c] = static_cast<double>(matrix.block(b)[3 * c + r]);
     }
   bool sound = true;
-  for (std::size_t i = 0; i < first_.size(); ++i) sound = factor_row(i, noise) && sound;
+  for (std::size_t p = 0; p < place_.size(); ++p) sound = factor_node(p, noise) && sound;
   return sound;
 }
 
-bool CoarseSolver::factor_row(std::size_t i, double noise) {
-  double* const L_i = row(i);
-  for (Index j = first_[i]; j < static_cast<Index>(i); ++j) {
-    const auto column = static_cast<std::size_t>(j);
-    const Index begin = std::max(first_[i], first_[column]);
-    L_i[j] = (L_i[j] - dot(L_i + begin, row(column) + begin, j - begin)) * inverse_pivots_[column];
+bool CoarseSolver::factor_node(std::size_t p, double noise) {
+  const std::array<double*, 3> rows{row(3 * p), row(3 * p + 1), row(3 * p + 2)};
+  const Index first = first_[3 * p];
+  for (auto q = static_cast<std::size_t>(first / 3); q < p; ++q) {
+    const std::array<double*, 3> others{row(3 * q), row(3 * q + 1), row(3 * q + 2)};
+    const Index begin = std::max(first, first_[3 * q]), end = 3 * static_cast<Index>(q);
+    const auto from = [&](const std::array<double*, 3>& pointers) {
+      return std::array<double*, 3>{pointers[0] + begin, pointers[1] + begin, pointers[2] + begin};
+    };
+    const std::array<double, 9> sums = dot_rows(from(rows), from(others), end - begin);
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 3; ++c) {
+        double value = rows[r][3 * q + c] - sums[3 * r + c];
+        for (std::size_t k = 0; k < c; ++k) value -= rows[r][3 * q + k] * others[c][3 * q + k];
+        rows[r][3 * q + c] = value * inverse_pivots_[3 * q + c];
+      }
   }
+  bool sound = true;
+  for (std::size_t i = 3 * p; i < 3 * p + 3; ++i) sound = factor_diagonal(i, 3 * p, noise) && sound;
+  return sound;
+}
+
+bool CoarseSolver::factor_diagonal(std::size_t i, std::size_t done, double noise) {
+  double* const L_i = row(i);
+  for (std::size_t j = done; j < i; ++j)
+    L_i[j] =
+        (L_i[j] - dot(L_i + first_[i], row(j) + first_[i], static_cast<Index>(j) - first_[i])) * inverse_pivots_[j];
   const double diagonal = L_i[i];
   const auto width = static_cast<std::int64_t>(i) - first_[i];
   const double pivot = diagonal - dot(L_i + first_[i], L_i + first_[i], width);

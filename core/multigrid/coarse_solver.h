@@ -33,7 +33,10 @@ class CoarseSolver {
 
  private:
   double* row(std::size_t i) { return factor_.data() + (row_offsets_[i] - first_[i]); }
-  bool factor_row(std::size_t i, double noise);
+  /// The three rows of the node at place p; false if a pivot says that the matrix is not semidefinite.
+  bool factor_node(std::size_t p, double noise);
+  /// Row i of the node whose rows start at `done`; columns before that are factored.
+  bool factor_diagonal(std::size_t i, std::size_t done, double noise);
 
   std::vector<Index> place_;               ///< of each node in the elimination order
   std::vector<Index> first_;               ///< first column of each scalar row's envelope

@@ -188,6 +188,7 @@ LatticeLevel colored(const PlainLevel& plain, const std::vector<Index>& order, s
   LatticeLevel level;
   level.pattern = permuted(plain.pattern, order, source);
   level.color_offsets = std::move(color_offsets);
+  level.rank = order;
   for (Index i = 0; i < level.pattern.rows(); ++i) {
     level.diagonal.push_back(level.pattern.find(i, i));
     CHECK(level.diagonal.back() >= 0);

@@ -18,6 +18,7 @@ struct LatticeLevel {
   BlockPattern pattern;
   std::vector<Index> color_offsets;    ///< colour c owns the rows [color_offsets[c], color_offsets[c + 1])
   std::vector<std::int64_t> diagonal;  ///< position of each row's diagonal block
+  std::vector<Index> rank;             ///< each row's place before the colouring: near rows have near ranks
   WeightMatrix restriction;            ///< R: next level's rows by this level's columns; empty on the last level
   WeightMatrix prolongation;           ///< R^T
 };

@@ -1,15 +1,25 @@
 #include "core/multigrid/multigrid.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "core/base/check.h"
 #include "core/multigrid/conjugate_gradients.h"
+#include "core/multigrid/float_solver.h"
 #include "core/multigrid/lattice_hierarchy.h"
 #include "core/multigrid/v_cycle.h"
 
 namespace softreel {
+namespace {
+
+/// Of |diag(A) y|, in r - A y after a solve in float.
+constexpr double kRoundingUnits = 1;
+
+}  // namespace
 
 struct Multigrid::Levels {
   Levels(const TetMesh& mesh, std::span<const double> element_stiffness, const BlockPattern& pattern,
@@ -18,7 +28,12 @@ struct Multigrid::Levels {
         threads(all_threads),
         hierarchy(build_lattice_hierarchy(mesh, element_stiffness, pattern, params)),
         float_cycle(hierarchy, params, threads),
-        solver(threads) {}
+        solver(threads),
+        float_solver(float_cycle, threads),
+        row_of_node(hierarchy.mesh_nodes.size()) {
+    for (std::size_t row = 0; row < row_of_node.size(); ++row)
+      row_of_node[static_cast<std::size_t>(hierarchy.mesh_nodes[row])] = static_cast<Index>(row);
+  }
 
   /// Puts a cycle in double in the place of the float one; false if it is there already or is no better.
   bool use_double_cycle(const BlockMatrixd& matrix) {
@@ -36,7 +51,69 @@ struct Multigrid::Levels {
   std::vector<std::uint8_t> pinned;
   bool usable = false;  ///< the present cycle is positive definite
   ConjugateGradients solver;
+  FloatSolver float_solver;
+  std::vector<Index> row_of_node;
+
+  double mean_diagonal(std::span<const std::uint8_t> held) const;
+  void eliminate(std::span<const std::uint8_t> held);
+  double gather_correction(double scale, std::span<Vec3> y) const;
 };
+
+/// Mean diagonal entry of the rows of mesh nodes that are not held; 1 if all are.
+double Multigrid::Levels::mean_diagonal(std::span<const std::uint8_t> held) const {
+  const LatticeLevel& level = hierarchy.levels.front();
+  const BlockMatrixf& matrix = float_cycle.finest_matrix();
+  double rows = 0;
+  for (const std::uint8_t h : held) rows += h == 0 ? 1 : 0;
+  const double sum = threads.sum_chunks(level.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    double part = 0;
+    for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row) {
+      if (held[static_cast<std::size_t>(hierarchy.mesh_nodes[row])] != 0) continue;
+      const float* const block = matrix.block(level.diagonal[row]);
+      part += static_cast<double>(block[0]) + static_cast<double>(block[4]) + static_cast<double>(block[8]);
+    }
+    return part;
+  });
+  return rows > 0 && sum > 0 ? sum / (3 * rows) : 1.0;
+}
+
+/// Zeroes rows and columns of held nodes; their diagonal becomes the mean one.
+void Multigrid::Levels::eliminate(std::span<const std::uint8_t> held) {
+  if (std::find(held.begin(), held.end(), 1) == held.end()) return;
+  const auto diagonal = static_cast<float>(mean_diagonal(held));
+  const LatticeLevel& level = hierarchy.levels.front();
+  BlockMatrixf& matrix = float_cycle.finest_matrix();
+  for (std::size_t row = 0; row < row_of_node.size(); ++row) {
+    if (held[static_cast<std::size_t>(hierarchy.mesh_nodes[row])] == 0) continue;
+    for (std::int64_t b = level.pattern.row_offsets[row]; b < level.pattern.row_offsets[row + 1]; ++b) {
+      const Index column = level.pattern.column_indices[static_cast<std::size_t>(b)];
+      float* const block = matrix.block(b);
+      float* const mirror = matrix.block(level.pattern.find(column, static_cast<Index>(row)));
+      std::fill(block, block + 9, 0.0F);
+      std::fill(mirror, mirror + 9, 0.0F);
+    }
+    float* const block = matrix.block(level.diagonal[row]);
+    block[0] = block[4] = block[8] = diagonal;
+  }
+}
+
+/// y = scale * solution, by mesh nodes; returns |diag(A) y|.
+double Multigrid::Levels::gather_correction(double scale, std::span<Vec3> y) const {
+  const LatticeLevel& level = hierarchy.levels.front();
+  const BlockMatrixf& matrix = float_cycle.finest_matrix();
+  const double square = threads.sum_chunks(level.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    double part = 0;
+    for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row) {
+      const Vec3 value =
+          scale * lanes(float_solver.solution(), static_cast<std::int64_t>(row)).head<3>().cast<double>();
+      const float* const block = matrix.block(level.diagonal[row]);
+      part += Vec3(block[0] * value[0], block[4] * value[1], block[8] * value[2]).squaredNorm();
+      y[static_cast<std::size_t>(hierarchy.mesh_nodes[row])] = value;
+    }
+    return part;
+  });
+  return std::sqrt(square);
+}
 
 Multigrid::Multigrid(const TetMesh& mesh, std::span<const double> element_stiffness, const BlockPattern& pattern,
                      const MultigridParams& params, const Threads& threads)
@@ -72,6 +149,51 @@ SolveReport Multigrid::solve(const BlockMatrixd& matrix, std::span<const Vec3> b
   }
   report.double_cycle = levels.double_cycle.has_value();
   return report;
+}
+
+BlockMatrixf& Multigrid::float_matrix() {
+  return levels_->float_cycle.finest_matrix();
+}
+
+const std::vector<Index>& Multigrid::row_of_node() const {
+  return levels_->row_of_node;
+}
+
+bool Multigrid::update_in_float(std::span<const std::uint8_t> pinned, bool keep_coarse) {
+  Levels& levels = *levels_;
+  levels.usable = false;
+  if (levels.hierarchy.levels.size() < 2) return false;
+  levels.pinned.assign(pinned.begin(), pinned.end());
+  levels.double_cycle.reset();
+  levels.eliminate(pinned);
+  if (keep_coarse) return levels.float_cycle.update_finest_in_place();
+  return levels.float_cycle.update_in_place(pinned);
+}
+
+FloatCorrection Multigrid::correct_in_float(std::span<const Vec3> r, double target, int max_iterations,
+                                            std::span<Vec3> y) {
+  Levels& levels = *levels_;
+  const auto nodes = static_cast<std::int64_t>(r.size());
+  CHECK(r.size() == levels.row_of_node.size());
+  CHECK(y.size() == r.size());
+  const double norm = std::sqrt(levels.threads.sum_chunks(nodes, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    double part = 0;
+    for (std::int64_t i = begin; i < end; ++i) part += r[static_cast<std::size_t>(i)].squaredNorm();
+    return part;
+  }));
+  NodeVector<float>& right_side = levels.float_cycle.right_side();
+  levels.threads.for_chunks(nodes, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t row = begin; row < end; ++row) {
+      const Index node = levels.hierarchy.mesh_nodes[static_cast<std::size_t>(row)];
+      const Vec3 scaled = r[static_cast<std::size_t>(node)] / norm;
+      lanes(right_side, row) = NodeLanes<float>(static_cast<float>(scaled[0]), static_cast<float>(scaled[1]),
+                                                static_cast<float>(scaled[2]), 0);
+    }
+  });
+  FloatCorrection correction;
+  correction.report = levels.float_solver.solve(target / norm, max_iterations);
+  correction.rounding = kRoundingUnits * std::numeric_limits<float>::epsilon() * levels.gather_correction(norm, y);
+  return correction;
 }
 
 std::vector<LevelInfo> Multigrid::levels() const {

@@ -3,6 +3,9 @@
 /// Transfers and patterns depend on the mesh alone; `update` takes new matrix values (Galerkin products R K R^T on
 /// every level, design 4.5), `solve` uses them. Pins never change the structure: they zero rows and columns of the fine
 /// matrix.
+///
+/// A time step, which asks for three digits, may take the shorter way: assemble the float matrix in place
+/// (float_matrix, update_in_float), solve in float (correct_in_float), and refine from the residual in double.
 #pragma once
 
 #include <cstdint>
@@ -38,6 +41,14 @@ struct LevelInfo {
   std::int64_t bytes = 0;
 };
 
+/// One solve in float, to be refined in double.
+struct FloatCorrection {
+  SolveReport report;
+  /// About what rounding of the matrix and the sums to float may have left in r - A y beyond the target: some units of
+  /// rounding of |diag(A)| |y|.
+  double rounding = 0;
+};
+
 /// Hierarchy over one body. Deterministic at any thread count.
 class Multigrid {
  public:
@@ -57,6 +68,19 @@ class Multigrid {
   /// matrix: that of the last update, or one near it (a lagged hierarchy stays a valid preconditioner).
   SolveReport solve(const BlockMatrixd& matrix, std::span<const Vec3> b, std::span<Vec3> x, double tolerance,
                     double absolute_tolerance, int max_iterations);
+
+  /// The finest level's own matrix in float, for a caller that assembles it in place instead of copying it from one in
+  /// double: rows numbered as row_of_node says, blocks column-major. Nothing but its values may change.
+  BlockMatrixf& float_matrix();
+  const std::vector<Index>& row_of_node() const;
+
+  /// `update` from what float_matrix() holds; rows and columns of pinned nodes are eliminated first. False if
+  /// correct_in_float cannot be used then: the matrix is not definite in float, or the mesh has one level only.
+  /// keep_coarse: leaves the coarse levels as the last update_in_float, with the same pins, made them.
+  bool update_in_float(std::span<const std::uint8_t> pinned, bool keep_coarse = false);
+
+  /// y = A^-1 r to |r - A y| <= target, all in float, where A is float_matrix(). r, y: per mesh node.
+  FloatCorrection correct_in_float(std::span<const Vec3> r, double target, int max_iterations, std::span<Vec3> y);
 
   std::vector<LevelInfo> levels() const;
 

@@ -1,11 +1,15 @@
 #include "core/multigrid/smoother.h"
 
-#include <Eigen/Cholesky>
+#include <cmath>
 
 #include "core/base/check.h"
 
 namespace softreel {
 namespace {
+
+/// A block counts as positive definite if its determinant is this share of the product of its diagonal: above the
+/// rounding of the cofactors.
+constexpr double kLeastDeterminant = 1e-14;
 
 /// The rows of a level by plain pointers, for the inner loops.
 template <typename Scalar>
@@ -40,6 +44,26 @@ struct Rows {
   const Scalar* inverse;
 };
 
+/// Inverse of a symmetric 3x3 block by cofactors, in double, as 3 columns of 4 lanes; false, and nothing stored, if the
+/// block is not positive definite.
+template <typename Scalar>
+bool invert(const Scalar* block, Scalar* inverse) {
+  const auto at = [&](int k) { return static_cast<double>(block[k]); };
+  const double a = at(0), b = 0.5 * (at(1) + at(3)), c = 0.5 * (at(2) + at(6)), d = at(4), e = 0.5 * (at(5) + at(7)),
+               f = at(8);
+  const double c00 = d * f - e * e, c01 = c * e - b * f, c02 = b * e - c * d;
+  const double c11 = a * f - c * c, c12 = b * c - a * e, c22 = a * d - b * b;
+  const double determinant = a * c00 + b * c01 + c * c02;
+  // Cofactors cancel where the block is nearly singular: then the sign of the determinant means nothing.
+  if (!(a > 0 && c22 > 0 && determinant > kLeastDeterminant * (a * d) * f) || !std::isfinite(determinant)) return false;
+  const double scale = 1 / determinant;
+  const double entries[9] = {c00, c01, c02, c01, c11, c12, c02, c12, c22};
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row)
+      inverse[4 * column + row] = static_cast<Scalar>(entries[3 * column + row] * scale);
+  return true;
+}
+
 }  // namespace
 
 template <typename Scalar>
@@ -52,24 +76,11 @@ Smoother<Scalar>::Smoother(const LatticeLevel& level, const BlockMatrix<Scalar>&
 
 template <typename Scalar>
 bool Smoother<Scalar>::update(const Threads& threads) {
-  // Inverted in double: 3x3, once per update.
   const double failures =
       threads.sum_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
         double failed = 0;
-        for (std::int64_t i = begin; i < end; ++i) {
-          const Scalar* const block = matrix_.block(level_.diagonal[static_cast<std::size_t>(i)]);
-          const Mat3 diagonal = Eigen::Map<const Eigen::Matrix<Scalar, 3, 3>>(block).template cast<double>();
-          const Mat3 symmetric = 0.5 * (diagonal + diagonal.transpose());
-          const Eigen::LLT<Mat3> factor(symmetric);
-          const Mat3 inverse = factor.solve(Mat3::Identity());
-          if (factor.info() != Eigen::Success || !inverse.allFinite()) {
-            ++failed;
-            continue;
-          }
-          for (int c = 0; c < 3; ++c)
-            for (int r = 0; r < 3; ++r)
-              inverses_[static_cast<std::size_t>(12 * i + 4 * c + r)] = static_cast<Scalar>(inverse(r, c));
-        }
+        for (std::int64_t i = begin; i < end; ++i)
+          if (!invert(matrix_.block(level_.diagonal[static_cast<std::size_t>(i)]), inverses_.data() + 12 * i)) ++failed;
         return failed;
       });
   return failures == 0;
@@ -122,10 +133,7 @@ void Smoother<Scalar>::smooth_from_zero(int sweeps, const NodeVector<Scalar>& b,
   forward_from_zero(b, x, threads);
   backward(b, x, threads);
   smooth(sweeps - 1, b, x, threads);
-  const Rows<Scalar> rows(level_, matrix_, inverses_);
-  threads.for_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(left_sums_, i) - rows.left_sum(i, x.data());
-  });
+  find_swept_residual(x, r, threads);
 }
 
 template <typename Scalar>
@@ -142,6 +150,15 @@ void Smoother<Scalar>::find_residual(const NodeVector<Scalar>& b, const NodeVect
   const Rows<Scalar> rows(level_, matrix_, inverses_);
   threads.for_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(b, i) - rows.full_sum(i, x.data());
+  });
+}
+
+template <typename Scalar>
+void Smoother<Scalar>::find_swept_residual(const NodeVector<Scalar>& x, NodeVector<Scalar>& r,
+                                           const Threads& threads) const {
+  const Rows<Scalar> rows(level_, matrix_, inverses_);
+  threads.for_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(left_sums_, i) - rows.left_sum(i, x.data());
   });
 }
 

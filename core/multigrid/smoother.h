@@ -33,6 +33,9 @@ class Smoother {
   void find_residual(const NodeVector<Scalar>& b, const NodeVector<Scalar>& x, NodeVector<Scalar>& r,
                      const Threads& threads) const;
 
+  /// The same right after a smoothing of x for b, from what its sweeps kept: half the reads.
+  void find_swept_residual(const NodeVector<Scalar>& x, NodeVector<Scalar>& r, const Threads& threads) const;
+
   std::int64_t bytes() const;
 
  private:

@@ -33,7 +33,7 @@ Cycle<Scalar>::Cycle(const LatticeHierarchy& hierarchy, const MultigridParams& p
     const LatticeLevel& fine = hierarchy.levels[h];
     const BlockPattern& coarse = hierarchy.levels[h + 1].pattern;
     if (params.galerkin == GalerkinMethod::Gather)
-      levels_[h]->gather = std::make_unique<GalerkinGather<Scalar>>(fine.pattern, fine.prolongation, coarse);
+      levels_[h]->gather = std::make_unique<GalerkinGather<Scalar>>(fine.pattern, fine.prolongation, coarse, fine.rank);
     if (params.galerkin == GalerkinMethod::Stream)
       levels_[h]->stream = std::make_unique<GalerkinStream<Scalar>>(fine.pattern, fine.prolongation, coarse);
   }
@@ -41,7 +41,17 @@ Cycle<Scalar>::Cycle(const LatticeHierarchy& hierarchy, const MultigridParams& p
 
 template <typename Scalar>
 bool Cycle<Scalar>::update(const BlockMatrixd& matrix, std::span<const std::uint8_t> pinned) {
-  copy_values(matrix, pinned);
+  copy_values(matrix);
+  return update_in_place(pinned);
+}
+
+template <typename Scalar>
+bool Cycle<Scalar>::update_in_place(std::span<const std::uint8_t> pinned) {
+  pinned_.clear();
+  if (!pinned.empty()) {
+    CHECK(pinned.size() == hierarchy_.mesh_nodes.size());
+    for (const Index node : hierarchy_.mesh_nodes) pinned_.push_back(pinned[static_cast<std::size_t>(node)]);
+  }
   bool sound = true;
   for (std::size_t h = 0; h + 1 < levels_.size(); ++h) {
     sound = levels_[h]->smoother->update(threads_) && sound;
@@ -51,7 +61,7 @@ bool Cycle<Scalar>::update(const BlockMatrixd& matrix, std::span<const std::uint
 }
 
 template <typename Scalar>
-void Cycle<Scalar>::copy_values(const BlockMatrixd& matrix, std::span<const std::uint8_t> pinned) {
+void Cycle<Scalar>::copy_values(const BlockMatrixd& matrix) {
   CHECK(matrix.pattern.blocks() == static_cast<std::int64_t>(hierarchy_.source_blocks.size()));
   BlockMatrix<Scalar>& finest = levels_.front()->matrix;
   constexpr std::int64_t kBlockGrain = 8192;
@@ -62,10 +72,6 @@ void Cycle<Scalar>::copy_values(const BlockMatrixd& matrix, std::span<const std:
       for (int k = 0; k < 9; ++k) to[k] = static_cast<Scalar>(from[k]);
     }
   });
-  pinned_.clear();
-  if (pinned.empty()) return;
-  CHECK(pinned.size() == hierarchy_.mesh_nodes.size());
-  for (const Index node : hierarchy_.mesh_nodes) pinned_.push_back(pinned[static_cast<std::size_t>(node)]);
 }
 
 template <typename Scalar>
@@ -96,6 +102,13 @@ void Cycle<Scalar>::apply(const NodeVector<double>& r, double r_norm, NodeVector
     for (std::int64_t i = begin; i < end; ++i)
       lanes(z, mesh_nodes[i]) = lanes(finest.x, i).template cast<double>() * r_norm;
   });
+}
+
+template <typename Scalar>
+const NodeVector<Scalar>& Cycle<Scalar>::find_residual_of_result() {
+  Level& finest = *levels_.front();
+  finest.smoother->find_swept_residual(finest.x, finest.r, threads_);
+  return finest.r;
 }
 
 /// x = cycle applied to b on level h.

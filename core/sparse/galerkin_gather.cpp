@@ -1,6 +1,9 @@
 #include "core/sparse/galerkin_gather.h"
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "core/base/check.h"
 
@@ -56,7 +59,7 @@ void for_each_upper_block(const BlockPattern& K, const Visit& visit) {
 }  // namespace
 
 template <typename Scalar>
-auto GalerkinGather<Scalar>::make_targets(const BlockPattern& E_pattern, std::vector<std::uint32_t>& target_of) const
+auto GalerkinGather<Scalar>::make_targets(const BlockPattern& E_pattern, std::vector<std::uint32_t>& target_of)
     -> std::vector<Target> {
   std::vector<Target> targets;
   target_of.resize(static_cast<std::size_t>(E_pattern.blocks()));
@@ -73,8 +76,23 @@ auto GalerkinGather<Scalar>::make_targets(const BlockPattern& E_pattern, std::ve
 }
 
 template <typename Scalar>
+void GalerkinGather<Scalar>::order_targets(const std::vector<Index>& first, std::vector<Target>& targets,
+                                           std::vector<std::uint32_t>& target_of) {
+  std::vector<std::uint32_t> order(targets.size() - 1);
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return first[a] < first[b]; });
+  std::vector<Target> sorted;
+  for (const std::uint32_t t : order) {
+    target_of[targets[t].block] = static_cast<std::uint32_t>(sorted.size());
+    sorted.push_back(targets[t]);
+  }
+  sorted.push_back(targets.back());
+  targets = std::move(sorted);
+}
+
+template <typename Scalar>
 GalerkinGather<Scalar>::GalerkinGather(const BlockPattern& K_pattern, const WeightMatrix& R_transposed,
-                                       const BlockPattern& E_pattern) {
+                                       const BlockPattern& E_pattern, std::span<const Index> rank) {
   constexpr std::int64_t kLimit = std::numeric_limits<std::uint32_t>::max();
   CHECK(R_transposed.rows() == K_pattern.rows());
   CHECK(K_pattern.blocks() < kLimit);
@@ -82,23 +100,27 @@ GalerkinGather<Scalar>::GalerkinGather(const BlockPattern& K_pattern, const Weig
   std::vector<std::uint32_t> target_of;
   targets_ = make_targets(E_pattern, target_of);
   // Counting sort of the terms by target and kind: counts, then first positions, then the terms in order of K.
-  std::vector<std::int64_t> position(2 * targets_.size(), 0);
+  std::vector<Index> first(targets_.size(), std::numeric_limits<Index>::max());  // rank that the target gathers from
+  for_each_upper_block(K_pattern, [&](std::int64_t, std::size_t l, std::size_t k) {
+    for_each_term(R_transposed, l, k, E_pattern, [&](std::int64_t e, bool transposed, double) {
+      const std::size_t t = target_of[static_cast<std::size_t>(e)];
+      ++(transposed ? targets_[t].transposed : targets_[t].direct);
+      if (!rank.empty()) first[t] = std::min(first[t], rank[l]);
+    });
+  });
+  if (!rank.empty()) order_targets(first, targets_, target_of);
+  std::vector<std::int64_t> position;
+  std::int64_t sum = 0;
+  for (Target& target : targets_)
+    for (std::int64_t* start : {&target.direct, &target.transposed}) {
+      const std::int64_t count = *start;
+      *start = sum;
+      position.push_back(sum);
+      sum += count;
+    }
   const auto bucket = [&](std::int64_t e, bool transposed) {
     return 2 * static_cast<std::size_t>(target_of[static_cast<std::size_t>(e)]) + (transposed ? 1 : 0);
   };
-  for_each_upper_block(K_pattern, [&](std::int64_t, std::size_t l, std::size_t k) {
-    for_each_term(R_transposed, l, k, E_pattern, [&](std::int64_t e, bool t, double) { ++position[bucket(e, t)]; });
-  });
-  std::int64_t sum = 0;
-  for (std::int64_t& p : position) {
-    const std::int64_t count = p;
-    p = sum;
-    sum += count;
-  }
-  for (std::size_t t = 0; t < targets_.size(); ++t) {
-    targets_[t].direct = position[2 * t];
-    targets_[t].transposed = position[2 * t + 1];
-  }
   terms_.resize(static_cast<std::size_t>(sum));
   for_each_upper_block(K_pattern, [&](std::int64_t b, std::size_t l, std::size_t k) {
     for_each_term(R_transposed, l, k, E_pattern, [&](std::int64_t e, bool t, double weight) {

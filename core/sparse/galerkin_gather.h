@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -18,8 +19,11 @@ namespace softreel {
 template <typename Scalar>
 class GalerkinGather {
  public:
-  /// K_pattern: symmetric. E_pattern: galerkin_pattern(K_pattern, R, transpose(R)).
-  GalerkinGather(const BlockPattern& K_pattern, const WeightMatrix& R_transposed, const BlockPattern& E_pattern);
+  /// K_pattern: symmetric. E_pattern: galerkin_pattern(K_pattern, R, transpose(R)). rank: per row of K, in which order
+  /// blocks that are near each other on the mesh lie near each other in memory; the blocks of E are made in that order,
+  /// so that a block of K is read from cache by all that use it. It changes no bits. Empty: in the order of E.
+  GalerkinGather(const BlockPattern& K_pattern, const WeightMatrix& R_transposed, const BlockPattern& E_pattern,
+                 std::span<const Index> rank = {});
 
   /// Fills E.values, which must have room, from K.values; the patterns are those of the constructor. E is exactly
   /// symmetric.
@@ -43,7 +47,11 @@ class GalerkinGather {
     std::uint32_t mirror;
   };
 
-  std::vector<Target> make_targets(const BlockPattern& E_pattern, std::vector<std::uint32_t>& target_of) const;
+  /// E's upper triangle; target_of: per block of E.
+  static std::vector<Target> make_targets(const BlockPattern& E_pattern, std::vector<std::uint32_t>& target_of);
+  /// Sorts all targets but the last, which marks the end, by `first`.
+  static void order_targets(const std::vector<Index>& first, std::vector<Target>& targets,
+                            std::vector<std::uint32_t>& target_of);
 
   std::vector<Target> targets_;  ///< one more than there are, as the end
   std::vector<Term> terms_;

@@ -73,7 +73,7 @@ void time_products(const TetMesh& mesh, const ElasticSystem& system, const Threa
     for (std::size_t k = 0; k < 9; ++k)
       K.values[9 * b + k] = static_cast<float>(system.matrix.block(hierarchy.source_blocks[b])[k]);
   const GalerkinStream<float> stream(K.pattern, fine.prolongation, E.pattern);
-  const GalerkinGather<float> gather(K.pattern, fine.prolongation, E.pattern);
+  const GalerkinGather<float> gather(K.pattern, fine.prolongation, E.pattern, fine.rank);
   const double per_block = 1e9 / static_cast<double>(K.pattern.blocks());
   const double naive_ns = per_block * median_seconds(threads, 3, [&] { galerkin_product(K, fine.restriction, E); });
   const double stream_ns = per_block * median_seconds(threads, 15, [&] { stream.run(K, E); });

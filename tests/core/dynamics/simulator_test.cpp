@@ -159,6 +159,48 @@ TEST(Simulator, NeverPullsHarderThanMaxForce) {
   }
 }
 
+/// A bar of two materials that a pin holds and a pull drags, in motion.
+BodyModel dragged_bar(double stiffest) {
+  BodyModel model = body_model(testing::kuhn_bar({12, 6, 6}, Vec3(1, 0.5, 0.5)), soft());
+  for (std::size_t e = 0; e < model.materials.size(); ++e) {
+    model.materials[e].damping_stiffness = 0.002;
+    model.materials[e].damping_mass = 0.1;
+    const Vec3 center = testing::centroid(model.mesh, e);
+    if (std::abs(center.x() - 0.5) < 0.2 && std::abs(center.y() - 0.25) < 0.15)
+      model.materials[e].youngs_modulus = stiffest;
+  }
+  Transform end;
+  end.translate = Vec3(0, 0.2, 0);
+  model.pins = {{"body.bar.pin[0]", left_end(model.mesh), {{{0, {}, Ease::Linear}, {4, end, Ease::Linear}}}, {}}};
+  Transform away;
+  away.translate = Vec3(0.5, 0, 0.3);
+  model.pulls = {testing::make_pull(right_end(model.mesh, 1), away, 500)};
+  return model;
+}
+
+TEST(Simulator, StepsInFloatAsInDoubleToTheTolerance) {
+  for (const double stiffest : {1e5, 1e8, 1e11})
+    for (const double tolerance : {1e-3, 1e-6}) {
+      SolverParams params;
+      params.tolerance = tolerance;
+      Bench bench(dragged_bar(stiffest), params), exact(dragged_bar(stiffest), exact_params());
+      for (int k = 1; k <= 5; ++k) {
+        const SimulationState start = exact.simulator.state();
+        bench.simulator.set_state(start);
+        ASSERT_TRUE(bench.simulator.step(k, 1.0 / 96).ok());
+        ASSERT_TRUE(exact.simulator.step(k, 1.0 / 96).ok());
+        double difference = 0, change = 0;
+        for (std::size_t i = 0; i < start.velocities.size(); ++i) {
+          const Vec3 expected = exact.simulator.state().velocities[i];
+          difference += (bench.simulator.state().velocities[i] - expected).squaredNorm();
+          change += (start.velocities[i] - expected).squaredNorm();
+        }
+        // The tolerance bounds the residual; after a multigrid cycle the error is no larger, but for a stiff core.
+        EXPECT_LT(std::sqrt(difference), 5 * tolerance * std::sqrt(change)) << stiffest << " " << tolerance;
+      }
+    }
+}
+
 TEST(Simulator, StepsWithTheSameBitsOnOneAndFourThreads) {
   BodyModel model = body_model(testing::kuhn_bar({12, 6, 6}, Vec3(1, 0.5, 0.5)), soft());
   model.pins = {testing::make_pin(left_end(model.mesh))};
@@ -180,6 +222,23 @@ TEST(Simulator, ContinuesAStoredStateWithTheSameBits) {
   for (int k = 4; k <= 6; ++k) {
     ASSERT_TRUE(whole.simulator.step(k, 1.0 / 24).ok());
     ASSERT_TRUE(resumed.simulator.step(k, 1.0 / 24).ok());
+  }
+  EXPECT_EQ(whole.simulator.state().positions, resumed.simulator.state().positions);
+  EXPECT_EQ(whole.simulator.state().velocities, resumed.simulator.state().velocities);
+}
+
+TEST(Simulator, ContinuesAStoredFrameWithTheSameBitsAlthoughStepsKeepCoarseLevels) {
+  constexpr int kSubsteps = 4;
+  Bench whole(dragged_bar(1e6)), resumed(dragged_bar(1e6), {}, 4);
+  const auto simulate_frame = [&](Bench& bench, int frame) {
+    for (int s = 1; s <= kSubsteps; ++s)
+      ASSERT_TRUE(bench.simulator.step(frame - 1 + static_cast<double>(s) / kSubsteps, 1.0 / 96).ok());
+  };
+  for (int frame = 1; frame <= 2; ++frame) simulate_frame(whole, frame);
+  resumed.simulator.set_state(whole.simulator.state());
+  for (int frame = 3; frame <= 4; ++frame) {
+    simulate_frame(whole, frame);
+    simulate_frame(resumed, frame);
   }
   EXPECT_EQ(whole.simulator.state().positions, resumed.simulator.state().positions);
   EXPECT_EQ(whole.simulator.state().velocities, resumed.simulator.state().velocities);

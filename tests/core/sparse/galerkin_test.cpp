@@ -1,5 +1,6 @@
 // The three forms of E = R K R^T: eq. (9), the paper's stream (Algorithm 1) and the symmetric gather.
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -125,6 +126,14 @@ TEST(Galerkin, GatherHasTheSameBitsAtAnyThreadCount) {
   gather.run(K, one, Threads(1));
   gather.run(K, four, Threads(4));
   EXPECT_EQ(one.values, four.values);
+  // Nor does the order in which the blocks are made matter.
+  std::vector<Index> rank(static_cast<std::size_t>(K.pattern.rows()));
+  std::iota(rank.begin(), rank.end(), 0);
+  std::shuffle(rank.begin(), rank.end(), random);
+  BlockMatrixf reordered{one.pattern, {}};
+  reserve_values(reordered);
+  GalerkinGather<float>(K.pattern, Rt, one.pattern, rank).run(K, reordered, Threads(4));
+  EXPECT_EQ(one.values, reordered.values);
 }
 
 // One block of K: the traversal must start at the first entry, which the paper's step 1 would skip.

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "core/base/check.h"
+#include "core/elasticity/float_assembly.h"
+
+namespace softreel {
+namespace {
+
+constexpr std::int64_t kRowGrain = 128;
+
+/// A row of a block, or a gradient, with a fourth lane that is not used. Blocks are sums of short rows, not batches, so
+/// the lanes are those of one row (GNU vectors, for their shuffles, which std::experimental::simd does not have).
+typedef float Row __attribute__((vector_size(16)));
+typedef float UnalignedRow __attribute__((vector_size(16), aligned(4), may_alias));
+typedef int Order __attribute__((vector_size(16)));
+
+using Rows = std::array<Row, 3>;
+
+[[gnu::always_inline]] inline Row load(const float* from) {
+  return *reinterpret_cast<const UnalignedRow*>(from);
+}
+
+/// Sums of g_i g_j^T and of r g_i g_j^T by rows.
+template <bool kUniform>
+struct Products {
+  Rows plain{}, weighted{};
+
+  [[gnu::always_inline]] void add(const float* gi, const float* gj) {
+    const Row row = load(gj);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Row outer = gi[k] * row;
+      plain[k] += outer;
+      if constexpr (!kUniform) weighted[k] += gj[3] * outer;
+    }
+  }
+};
+
+[[gnu::always_inline]] inline Rows scaled(const Rows& rows, float factor) {
+  return {factor * rows[0], factor * rows[1], factor * rows[2]};
+}
+
+[[gnu::always_inline]] inline Rows transposed(const Rows& m) {
+  const Row low = __builtin_shuffle(m[0], m[1], Order{0, 4, 1, 5}),
+            high = __builtin_shuffle(m[0], m[1], Order{2, 6, 3, 7});
+  return {__builtin_shuffle(low, m[2], Order{0, 1, 4, 4}), __builtin_shuffle(low, m[2], Order{2, 3, 5, 5}),
+          __builtin_shuffle(high, m[2], Order{0, 1, 6, 6})};
+}
+
+/// The trace in all lanes.
+[[gnu::always_inline]] inline Row trace(const Rows& m) {
+  return (__builtin_shuffle(m[0], Order{0, 0, 0, 0}) + __builtin_shuffle(m[1], Order{1, 1, 1, 1})) +
+         __builtin_shuffle(m[2], Order{2, 2, 2, 2});
+}
+
+/// Stores a + b + diagonal I by rows: nine scalars in three overlapping stores that stay inside of the block.
+[[gnu::always_inline]] inline void store(const Rows& a, const Rows& b, const Row& diagonal, float* block) {
+  const Row row0 = a[0] + b[0] + diagonal * Row{1, 0, 0, 0}, row1 = a[1] + b[1] + diagonal * Row{0, 1, 0, 0},
+            row2 = a[2] + b[2] + diagonal * Row{0, 0, 1, 0};
+  *reinterpret_cast<UnalignedRow*>(block) = row0;
+  *reinterpret_cast<UnalignedRow*>(block + 3) = row1;
+  *reinterpret_cast<UnalignedRow*>(block + 5) = __builtin_shuffle(row1, row2, Order{2, 4, 5, 6});
+}
+
+/// K_ij = L + P^T + tr(P) I and its transpose K_ji, by columns: the rows of K_ij are the columns of K_ji.
+template <bool kUniform>
+[[gnu::always_inline]] inline void store_pair(const Products<kUniform>& products, float ratio, float* block,
+                                              float* mirror) {
+  const Rows& P = products.plain;
+  const Rows P_t = transposed(P);
+  const Row diagonal = trace(P);
+  store(kUniform ? scaled(P, ratio) : products.weighted, P_t, diagonal, mirror);
+  store(kUniform ? scaled(P_t, ratio) : transposed(products.weighted), P, diagonal, block);
+}
+
+}  // namespace
+
+FloatAssembler::FloatAssembler(const std::vector<Tet>& tets, const NodeElements& node_elements,
+                               const BlockPattern& target, std::span<const Index> row_of_node)
+    : node_elements_(node_elements) {
+  CHECK(tets.size() < (std::size_t{1} << 28));
+  CHECK(target.blocks() < std::int64_t{std::numeric_limits<std::uint32_t>::max()});
+  const auto position = [&](Index i, Index j) {
+    return target.find(row_of_node[static_cast<std::size_t>(i)], row_of_node[static_cast<std::size_t>(j)]);
+  };
+  std::vector<std::pair<Index, std::uint32_t>> row;  // column and reference
+  row_starts_.push_back(0);
+  for (std::size_t i = 0; i < row_of_node.size(); ++i) {
+    const auto node = static_cast<Index>(i);
+    diagonals_.push_back(position(node, node));
+    row.clear();
+    for (std::int64_t k = node_elements.offsets[i]; k < node_elements.offsets[i + 1]; ++k) {
+      const std::int64_t entry = node_elements.entries[static_cast<std::size_t>(k)];
+      const Tet& tet = tets[static_cast<std::size_t>(entry / 4)];
+      for (std::size_t j = 0; j < 4; ++j)
+        if (tet[j] > node)
+          row.emplace_back(tet[j], static_cast<std::uint32_t>(4 * static_cast<std::size_t>(entry) + j));
+    }
+    std::sort(row.begin(), row.end());
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const Index column = row[k].first;
+      if (k == 0 || column != row[k - 1].first)
+        blocks_.push_back({static_cast<std::uint32_t>(position(node, column)),
+                           static_cast<std::uint32_t>(position(column, node)),
+                           static_cast<std::uint32_t>(references_.size())});
+      references_.push_back(row[k].second);
+    }
+    row_starts_.push_back(static_cast<std::int64_t>(blocks_.size()));
+  }
+  blocks_.push_back({0, 0, static_cast<std::uint32_t>(references_.size())});
+}
+
+template <bool kUniform>
+void FloatAssembler::gather_rows(const StepTerms& terms, std::span<const double> node_terms, BlockMatrixf& matrix,
+                                 std::int64_t begin, std::int64_t end) const {
+  const float* const gradients = terms.gradients.data();
+  const float ratio = gradients[3];
+  for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+    Products<kUniform> own;
+    for (std::int64_t k = node_elements_.offsets[i]; k < node_elements_.offsets[i + 1]; ++k) {
+      const float* const g = gradients + 4 * node_elements_.entries[static_cast<std::size_t>(k)];
+      own.add(g, g);
+    }
+    // A sum of g g^T is symmetric to the last bit as it is.
+    store(kUniform ? scaled(own.plain, ratio) : own.weighted, own.plain,
+          trace(own.plain) + static_cast<float>(node_terms[i]), matrix.block(diagonals_[i]));
+    for (std::int64_t b = row_starts_[i]; b < row_starts_[i + 1]; ++b) {
+      const Block& block = blocks_[static_cast<std::size_t>(b)];
+      const std::uint32_t last = blocks_[static_cast<std::size_t>(b) + 1].first;
+      Products<kUniform> products;
+      for (std::uint32_t r = block.first; r < last; ++r) {
+        const std::size_t reference = references_[r];
+        products.add(gradients + 4 * (reference >> 2), gradients + 16 * (reference >> 4) + 4 * (reference & 3));
+      }
+      store_pair<kUniform>(products, ratio, matrix.block(block.position), matrix.block(block.mirror));
+    }
+  }
+}
+
+void FloatAssembler::assemble(const StepTerms& terms, std::span<const double> node_terms, BlockMatrixf& matrix,
+                              const Threads& threads) const {
+  CHECK(static_cast<std::int64_t>(matrix.values.size()) >= 9 * matrix.pattern.blocks());
+  CHECK(node_terms.size() == diagonals_.size());
+  threads.for_chunks(static_cast<std::int64_t>(diagonals_.size()), kRowGrain,
+                     [&](std::int64_t begin, std::int64_t end) {
+                       if (terms.uniform_ratio)
+                         gather_rows<true>(terms, node_terms, matrix, begin, end);
+                       else
+                         gather_rows<false>(terms, node_terms, matrix, begin, end);
+                     });
+}
+
+}  // namespace softreel

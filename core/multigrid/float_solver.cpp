@@ -1,0 +1,101 @@
+#include "core/multigrid/float_solver.h"
+
+#include <cmath>
+#include <vector>
+
+namespace softreel {
+namespace {
+
+/// Iterations that must at least halve the residual; a sound cycle needs two or three.
+constexpr int kStagnation = 12;
+
+using Lanes = NodeLanes<float>;
+
+/// A sum of products of lanes in double; the fourth lane counts for nothing.
+struct Sum {
+  Eigen::Array4d lanes = Eigen::Array4d::Zero();
+  void add(const Lanes& a, const Lanes& b) { lanes += (a * b).cast<double>(); }
+  double value() const { return lanes[0] + lanes[1] + lanes[2]; }
+};
+
+}  // namespace
+
+/// z . r, z . q and z . A z with A z = r - residual_of_z.
+FloatSolver::Dots FloatSolver::find_dots(const NodeVector<float>& residual_of_z) const {
+  const NodeVector<float>&z = cycle_.result(), &r = cycle_.right_side();
+  const auto nodes = static_cast<std::int64_t>(z.size() / 4);
+  std::vector<Dots> parts(static_cast<std::size_t>((nodes + kRowGrain - 1) / kRowGrain));
+  threads_.for_chunks(nodes, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    Sum zr, zq, zAz;
+    for (std::int64_t i = begin; i < end; ++i) {
+      const Lanes z_i = lanes(z, i), r_i = lanes(r, i);
+      zr.add(z_i, r_i);
+      zq.add(z_i, lanes(q_, i));
+      zAz.add(z_i, r_i - lanes(residual_of_z, i));
+    }
+    parts[static_cast<std::size_t>(begin / kRowGrain)] = {zr.value(), zq.value(), zAz.value()};
+  });
+  Dots dots;
+  for (const Dots& part : parts) {
+    dots.zr += part.zr;
+    dots.zq += part.zq;
+    dots.zAz += part.zAz;
+  }
+  return dots;
+}
+
+/// p = z + beta p, q = A z + beta q, x += alpha p, r -= alpha q; returns r . r.
+double FloatSolver::advance(const NodeVector<float>& residual_of_z, float beta, float alpha) {
+  const NodeVector<float>& z = cycle_.result();
+  NodeVector<float>& r = cycle_.right_side();
+  const auto nodes = static_cast<std::int64_t>(z.size() / 4);
+  return threads_.sum_chunks(nodes, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    Sum rr;
+    for (std::int64_t i = begin; i < end; ++i) {
+      const Lanes p = lanes(z, i) + beta * lanes(p_, i);
+      const Lanes q = lanes(r, i) - lanes(residual_of_z, i) + beta * lanes(q_, i);
+      lanes(p_, i) = p;
+      lanes(q_, i) = q;
+      lanes(x_, i) += alpha * p;
+      const Lanes next = lanes(r, i) - alpha * q;
+      lanes(r, i) = next;
+      rr.add(next, next);
+    }
+    return rr.value();
+  });
+}
+
+SolveReport FloatSolver::solve(double target, int max_iterations) {
+  const std::size_t size = cycle_.right_side().size();
+  for (NodeVector<float>* vector : {&x_, &p_, &q_}) vector->assign(size, 0.0F);
+  SolveReport report{SolveStatus::Breakdown, 0, 1, false};
+  double pq_before = 0, milestone = 0;
+  int milestone_iteration = 0;
+  while (report.iterations < max_iterations) {
+    cycle_.run();
+    const NodeVector<float>& residual_of_z = cycle_.find_residual_of_result();
+    const Dots dots = find_dots(residual_of_z);
+    // Flexible: beta = z . (r - r_old) / (z_old . r_old) with r - r_old = -alpha q and alpha = z_old . r_old / (p . q).
+    // Then p_new . q_new = z . A z - (z . q)^2 / (p . q), without another sum.
+    const double beta = pq_before > 0 ? -dots.zq / pq_before : 0.0;
+    const double pq = dots.zAz + beta * dots.zq;
+    if (!(dots.zr > 0) || !(pq > 0) || !std::isfinite(dots.zr) || !std::isfinite(pq)) return report;
+    const double rr = advance(residual_of_z, static_cast<float>(beta), static_cast<float>(dots.zr / pq));
+    pq_before = pq;
+    ++report.iterations;
+    report.residual = std::sqrt(rr);
+    if (report.residual <= target) {
+      report.status = SolveStatus::Converged;
+      return report;
+    }
+    if (milestone_iteration == 0 || report.residual <= 0.5 * milestone) {
+      milestone = report.residual;
+      milestone_iteration = report.iterations;
+    }
+    if (report.iterations - milestone_iteration >= kStagnation || !std::isfinite(rr)) return report;
+  }
+  report.status = SolveStatus::MaxIterations;
+  return report;
+}
+
+}  // namespace softreel

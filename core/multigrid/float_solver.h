@@ -1,0 +1,42 @@
+/// Conjugate gradients in float on the finest level of a float cycle: one correction within a refinement in double.
+///
+/// After its last sweep the cycle knows A z for half a product (Smoother::find_swept_residual), and A p follows from it
+/// as p does from z: there is no product with A, and no matrix but the cycle's own. Bound: an iteration reads the float
+/// matrix 3.5 times instead of 3 times and a matrix in double once.
+#pragma once
+
+#include <span>
+
+#include "core/base/parallel.h"
+#include "core/multigrid/v_cycle.h"
+#include "core/sparse/block_kernels.h"
+#include "core/sparse/solve_report.h"
+
+namespace softreel {
+
+class FloatSolver {
+ public:
+  /// Both are kept by reference; the cycle needs two levels at least.
+  FloatSolver(Cycle<float>& cycle, const Threads& threads) : cycle_(cycle), threads_(threads) {}
+
+  /// Solves A y = r for r = cycle.right_side(), which becomes the residual, to |r| <= target in float arithmetic.
+  /// Status: Converged, MaxIterations, or Breakdown after stagnation or loss of definiteness.
+  SolveReport solve(double target, int max_iterations);
+
+  /// The last solution, in the order of the cycle's level 0.
+  const NodeVector<float>& solution() const { return x_; }
+
+ private:
+  struct Dots {
+    double zr = 0, zq = 0, zAz = 0;
+  };
+
+  Dots find_dots(const NodeVector<float>& residual_of_z) const;
+  double advance(const NodeVector<float>& residual_of_z, float beta, float alpha);
+
+  Cycle<float>& cycle_;
+  const Threads& threads_;
+  NodeVector<float> x_, p_, q_;  ///< q = A p
+};
+
+}  // namespace softreel

@@ -1,0 +1,91 @@
+// The solve in float that a time step refines.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/multigrid/multigrid.h"
+#include "tests/support/elastic_box.h"
+
+namespace softreel {
+namespace {
+
+using test_support::assemble;
+using test_support::ElasticParams;
+using test_support::ElasticSystem;
+using test_support::make_box;
+
+bool at_left_end(const Vec3& x) {
+  return x[0] < 1e-9;
+}
+
+SolveReport solve_in_double(const TetMesh& mesh, const ElasticSystem& system, double tolerance) {
+  const Threads threads(1);
+  Multigrid multigrid(mesh, {}, system.matrix.pattern, {}, threads);
+  multigrid.update(system.matrix, system.pinned);
+  std::vector<Vec3> x(mesh.nodes.size(), Vec3::Zero());
+  return multigrid.solve(system.matrix, system.load, x, tolerance, 0, 400);
+}
+
+/// Puts the system's matrix, without its pins, where a caller that assembles in place would.
+void fill_float_matrix(Multigrid& multigrid, const BlockMatrixd& matrix) {
+  BlockMatrixf& target = multigrid.float_matrix();
+  const std::vector<Index>& row = multigrid.row_of_node();
+  for (std::size_t i = 0; i < row.size(); ++i)
+    for (std::int64_t b = matrix.pattern.row_offsets[i]; b < matrix.pattern.row_offsets[i + 1]; ++b) {
+      const auto j = static_cast<std::size_t>(matrix.pattern.column_indices[static_cast<std::size_t>(b)]);
+      float* const block = target.block(target.pattern.find(row[i], row[j]));
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) block[3 * c + r] = static_cast<float>(matrix.block(b)[3 * r + c]);
+    }
+}
+
+TEST(FloatSolver, SolvesInFloatInAsManyIterationsAsInDouble) {
+  const TetMesh mesh = make_box({24, 6, 6}, 0.04);
+  ElasticParams params;
+  params.seconds = 0.01;
+  const ElasticSystem system = assemble(mesh, params, at_left_end), free = assemble(mesh, params, {});
+  const SolveReport expected = solve_in_double(mesh, system, 1e-4);
+  double norm = 0;
+  for (const Vec3& b : system.load) norm += b.squaredNorm();
+  norm = std::sqrt(norm);
+  std::vector<std::vector<Vec3>> solutions;
+  for (const int count : {1, 4}) {
+    const Threads threads(count);
+    Multigrid multigrid(mesh, {}, system.matrix.pattern, {}, threads);
+    fill_float_matrix(multigrid, free.matrix);
+    ASSERT_TRUE(multigrid.update_in_float(system.pinned));
+    std::vector<Vec3> y(mesh.nodes.size());
+    const FloatCorrection correction = multigrid.correct_in_float(system.load, 1e-4 * norm, 50, y);
+    EXPECT_EQ(correction.report.status, SolveStatus::Converged);
+    EXPECT_EQ(correction.report.iterations, expected.iterations);
+    const double left = test_support::relative_residual(system.matrix, system.load, y) * norm;
+    EXPECT_LE(left, correction.report.residual * norm + correction.rounding);
+    EXPECT_GE(left, correction.report.residual * norm - correction.rounding);
+    solutions.push_back(y);
+  }
+  EXPECT_EQ(solutions[0], solutions[1]);
+}
+
+TEST(FloatSolver, RefusesInFloatWhatIsNotDefinite) {
+  const TetMesh mesh = make_box({12, 3, 3}, 0.1);
+  const ElasticSystem system = assemble(mesh, {}, at_left_end);
+  const Threads threads(1);
+  Multigrid multigrid(mesh, {}, system.matrix.pattern, {}, threads);
+  fill_float_matrix(multigrid, system.matrix);
+  const auto node =
+      static_cast<std::size_t>(std::find(system.pinned.begin(), system.pinned.end(), 0) - system.pinned.begin());
+  const Index row = multigrid.row_of_node()[node];
+  BlockMatrixf& matrix = multigrid.float_matrix();
+  float& entry = matrix.block(matrix.pattern.find(row, row))[4];
+  EXPECT_TRUE(multigrid.update_in_float(system.pinned));
+  for (const float bad : {-entry, std::numeric_limits<float>::quiet_NaN()}) {
+    entry = bad;
+    EXPECT_FALSE(multigrid.update_in_float(system.pinned));
+  }
+}
+
+}  // namespace
+}  // namespace softreel
