@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/elasticity/element_rotation.h"
+#include "core/elasticity/rotation_rivals.h"
 
 namespace softreel {
 namespace {
@@ -79,6 +80,10 @@ void find_rotations(const ElasticBody& body, RotationMethod method, std::span<co
                     std::span<Quaternion> rotations, const Threads& threads) {
   if (method == RotationMethod::None) {
     std::fill(rotations.begin(), rotations.end(), Quaternion::Identity());
+    return;
+  }
+  if (method != RotationMethod::Consistent && method != RotationMethod::Energy) {
+    find_rival_rotations(body, method, positions, rotations, threads);
     return;
   }
   threads.for_chunks(static_cast<std::int64_t>(body.tets.size()), kElementGrain,
