@@ -19,10 +19,10 @@ struct PaperState {
 /// (5) and (6). Nothing if the Hessian is singular to working precision or the result is not finite.
 std::optional<PaperState> step_paper_newton(const RotationEnergy& energy, const PaperState& state) noexcept;
 
-/// Most iterations of find_paper_rotation, and the change of q that ends them. The paper names neither; near the
-/// solution the iteration is quadratic, so that from the last time step three to five are enough.
+/// Most iterations of find_paper_rotation, and the change of q that ends them. The paper names neither. The iteration
+/// is quadratic near the solution: after such a change it is there to round-off, three or four from the last time step.
 inline constexpr int kPaperIterations = 20;
-inline constexpr double kPaperTolerance = 1e-12;
+inline constexpr double kPaperTolerance = 1e-9;
 
 /// Rotation Q by the paper's Newton on (q, lambda) from the previous step's rotation, without its value checked.
 ///

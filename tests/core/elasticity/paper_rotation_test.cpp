@@ -110,6 +110,12 @@ TEST(FindPaperRotation, KeepsTheGuessWhereNewtonHasNoStep) {
   }
   EXPECT_TRUE(find_paper_rotation(regular, point, guess).isApprox(guess, 0)) << "Hessian zero";
   EXPECT_TRUE(find_paper_rotation(regular, reflected, half_turn).isApprox(half_turn, 0)) << "triple eigenvalue";
+  for (int sample = 0; sample < 50; ++sample) {  // the same, with pivots of round-off
+    const Quaternion turn = random_rotation(random), in_space = turned(turn, EIGEN_PI, random);
+    TetNodes turned_nodes;
+    for (std::size_t k = 0; k < 4; ++k) turned_nodes[k] = turn * reflected[k];
+    EXPECT_TRUE(find_paper_rotation(regular, turned_nodes, in_space).isApprox(in_space, 0));
+  }
   for (const double wrong :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200}) {
     bad[2].y() = wrong;

@@ -68,6 +68,17 @@ TEST(FindQrRotation, FallsBackOnTheGuessWhereTheFaceIsALine) {
   EXPECT_TRUE(find_qr_rotation(kRest, bad, guess).isApprox(guess, 0));
 }
 
+TEST(FindQrRotation, IsTheSameAtAnyScale) {
+  Random random(5);
+  for (const double scale : {1e-200, 1e-12, 1e6, 1e200}) {
+    const Quaternion q = random_rotation(random);
+    TetNodes deformed;
+    for (std::size_t k = 0; k < 4; ++k) deformed[k] = q * (scale * kRest[k]);
+    const Quaternion found = find_qr_rotation(kRest, deformed, random_rotation(random));
+    EXPECT_LT((found.toRotationMatrix() - q.toRotationMatrix()).norm(), 1e-14) << scale;
+  }
+}
+
 struct Bar {
   Bar() : mesh(testing::kuhn_bar({3, 2, 2}, Vec3(0.5, 0.3, 0.2))) {
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i) mesh.nodes[i] *= 1 + 0.02 * static_cast<double>(i % 5);
