@@ -172,8 +172,8 @@ bool StaticSolver::find_direction(const StaticState& state, double tolerance, st
 
 bool StaticSolver::improves(const StaticState& from, const StaticState& to, double step, double slope) const {
   if (!std::isfinite(to.residual) || !std::isfinite(to.energy)) return false;
-  // eq. (3)'s rotation has no energy: there only the residual can tell.
-  if (parts_.params.rotation == RotationMethod::Energy) return to.residual < (1 - kArmijo * step) * from.residual;
+  // eq. (3)'s rotation, for one, has no energy: there only the residual can tell.
+  if (!has_energy(parts_.params.rotation)) return to.residual < (1 - kArmijo * step) * from.residual;
   if (to.energy <= from.energy - kArmijo * step * slope) return true;
   return to.energy <= from.energy + std::max(from.energy_noise, to.energy_noise) && to.residual < from.residual;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/elasticity/element_rotation.h"
+#include "core/elasticity/rotation_rivals.h"
 
 namespace softreel {
 namespace {
@@ -83,6 +84,10 @@ void find_rotations(const ElasticBody& body, RotationMethod method, std::span<co
                          find_consistent_rotations(batches, positions, rotations, static_cast<std::size_t>(begin),
                                                    static_cast<std::size_t>(end));
                        });
+    return;
+  }
+  if (method != RotationMethod::Energy) {
+    find_rival_rotations(body, method, positions, rotations, threads);
     return;
   }
   threads.for_chunks(static_cast<std::int64_t>(body.tets.size()), kElementGrain,

@@ -14,12 +14,20 @@
 
 namespace softreel {
 
-/// Which A the element rotation is extracted from (design 4.2).
+/// How the element rotation is extracted (design 4.2). Stored results are keyed by the numbers: new methods go last.
 enum class RotationMethod {
-  Consistent,  ///< A = F: the force is the exact gradient of a continuous energy
-  Energy,      ///< A = F S: the paper's eq. (3), safeguarded
-  None         ///< small strain: Q = I
+  Consistent,   ///< nearest to F: the force is the exact gradient of a continuous energy
+  Energy,       ///< nearest to F S: the paper's eq. (3), safeguarded
+  None,         ///< small strain: Q = I
+  Paper,        ///< eq. (3) by the paper's bare Newton, eqs. (5)-(8)
+  PolarSmooth,  ///< averages of the consistent ones over neighbours (sec. 5)
+  Qr            ///< Gram-Schmidt of F; depends on the order of nodes
 };
+
+/// True if the force is the gradient of elastic_energy at the method's rotations.
+constexpr bool has_energy(RotationMethod method) {
+  return method == RotationMethod::Consistent || method == RotationMethod::None;
+}
 
 /// How the dilatation stress grows (design 4.3).
 enum class Dilatation { Capped, Linear };

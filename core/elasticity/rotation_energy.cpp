@@ -1,7 +1,5 @@
 #include "core/elasticity/rotation_energy.h"
 
-#include <Eigen/LU>
-
 #include "core/elasticity/davenport.h"
 #include "core/elasticity/element_rotation.h"
 #include "core/tetmesh/tet_mesh.h"
@@ -59,16 +57,6 @@ Eigen::Matrix<double, 5, 5> RotationEnergy::hessian(const Vec4& q, double multip
 
 double RotationEnergy::multiplier(const Vec4& unit_q) const {
   return 2 * weight_ * (unit_q.dot(davenport_ * unit_q) - deformed_square_);
-}
-
-Vec4 RotationEnergy::newton(Vec4 q, int iterations) const {
-  double l = multiplier(q.normalized());
-  for (int k = 0; k < iterations; ++k) {
-    const Eigen::Matrix<double, 5, 1> change = hessian(q, l).partialPivLu().solve(gradient(q, l));
-    q -= change.head<4>();
-    l -= change[4];
-  }
-  return q;
 }
 
 }  // namespace softreel

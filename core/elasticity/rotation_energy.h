@@ -1,7 +1,7 @@
-/// The paper's rotation energy as it is written, eqs. (3)-(8): value, gradient, Hessian and bare Newton iteration.
+/// The paper's rotation energy as it is written, eqs. (3)-(8): value, gradient and Hessian.
 ///
 /// find_rotation solves the same problem as an eigenproblem and is what the simulation uses; this is the reference that
-/// ties the two together, and the paper's own method, to compare with.
+/// ties the two together; paper_rotation iterates on it as the paper does.
 #pragma once
 
 #include "core/base/types.h"
@@ -28,10 +28,6 @@ class RotationEnergy {
   /// The multiplier at which the gradient by q vanishes for an eigenvector q of N with eigenvalue mu:
   /// 2 (V/20) (mu - s).
   double multiplier(const Vec4& unit_q) const;
-
-  /// The paper's iteration after eq. (8), unguarded: it goes to whichever stationary point is near. iterations: at
-  /// most.
-  Vec4 newton(Vec4 q, int iterations) const;
 
  private:
   Eigen::Matrix4d davenport_;

@@ -93,8 +93,13 @@ const Table<Shot>& solver_table() {
     t.add("rotation", of_solver(&P::rotation),
           choice<RotationMethod>({{"consistent", RotationMethod::Consistent},
                                   {"energy", RotationMethod::Energy},
+                                  {"paper", RotationMethod::Paper},
+                                  {"polar_smooth", RotationMethod::PolarSmooth},
+                                  {"qr", RotationMethod::Qr},
                                   {"none", RotationMethod::None}}),
-          "", "Of each tetrahedron: polar, by the paper's energy, or none (small strain only).")
+          "",
+          "Of each tetrahedron: polar, by the paper's energy safely or by its bare Newton, polar averaged over "
+          "neighbours, Gram-Schmidt (depends on the order of nodes), or none (small strain only).")
         .add("dilatation", of_solver(&P::dilatation),
              choice<Dilatation>({{"capped", Dilatation::Capped}, {"linear", Dilatation::Linear}}), "",
              "\"capped\" keeps strong stretch stable; \"linear\" is the bare linear material.")

@@ -77,7 +77,8 @@ class RigidPins : public ::testing::TestWithParam<double> {};
 
 TEST_P(RigidPins, MoveTheBodyRigidly) {
   for (const bool both_ends : {false, true})
-    for (const RotationMethod rotation : {RotationMethod::Consistent, RotationMethod::Energy}) {
+    for (const RotationMethod rotation : {RotationMethod::Consistent, RotationMethod::Energy, RotationMethod::Paper,
+                                          RotationMethod::PolarSmooth, RotationMethod::Qr}) {
       BodyModel model = body_model(small_bar(), rubber());
       model.gravity.setZero();
       Transform motion;

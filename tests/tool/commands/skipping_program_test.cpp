@@ -67,6 +67,15 @@ TEST_F(Skipping, TheFirstRunDoesEverythingAndTheSecondNothing) {
   EXPECT_GT(second.saved_seconds, 0);
 }
 
+TEST_F(Skipping, EachRotationOfTheElementsIsSimulatedAndKeptApart) {
+  start("rotations");
+  for (const int runs : {1, 2})
+    for (const char* name : {"consistent", "energy", "paper", "polar_smooth", "qr", "none"}) {
+      const Work work = run_shot(fmt::format("--set solver.rotation={}", name), "simulate");
+      EXPECT_EQ(work.computed > 0, runs == 1) << name;
+    }
+}
+
 TEST_F(Skipping, ALightOrTheCameraTracesAndDoesNotSimulate) {
   start("light");
   run_shot();
