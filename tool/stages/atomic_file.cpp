@@ -22,12 +22,6 @@ namespace {
 
 constexpr std::string_view kTemporaryEnding = ".part";
 
-std::string host_name() {
-  char host[256] = "host";
-  ::gethostname(host, sizeof host - 1);
-  return host;
-}
-
 /// ".NAME.HOST.PID.N.part" of any host.
 bool is_temporary_name(const std::string& name) {
   static const std::regex form(R"(\..+\.[^/]+\.[0-9]+\.[0-9]+\.part)");

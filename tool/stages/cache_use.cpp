@@ -42,12 +42,6 @@ struct Use {
   bool running = false;
 };
 
-std::string host_name() {
-  char host[256] = "host";
-  ::gethostname(host, sizeof host - 1);
-  return host;
-}
-
 /// A file of uses/: the owner, the shot's path, the host, then +ITEM and -ITEM lines.
 Use read_use(const fs::path& file) {
   Use use;

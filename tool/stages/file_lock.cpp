@@ -41,6 +41,12 @@ int lock_patiently(int descriptor, int how) {
 
 }  // namespace
 
+std::string host_name() {
+  char host[256] = "host";
+  ::gethostname(host, sizeof host - 1);
+  return host;
+}
+
 std::optional<FileLock> FileLock::try_adopt(int descriptor, Sharing sharing) {
   FileLock lock(descriptor);
   if (lock_patiently(descriptor, operation(sharing) | LOCK_NB) == 0 || errno != EWOULDBLOCK) return lock;

@@ -39,4 +39,7 @@ class FileLock {
   std::string removed_;
 };
 
+/// This machine's name, for files that tell whose they are.
+std::string host_name();
+
 }  // namespace softreel

@@ -13,17 +13,22 @@
 namespace softreel {
 namespace {
 
-/// The image sequence pattern of ffmpeg has its own use for '%'.
-std::string escaped(std::string path) {
-  for (std::size_t i = path.find('%'); i != std::string::npos; i = path.find('%', i + 2)) path.insert(i, "%");
-  return path;
+/// The frames as ffmpeg's concat demuxer wants them: unlike its sequence pattern, it takes any number and any name.
+std::string frame_list(int first, int last, const Outputs& outputs) {
+  std::string list;
+  for (int frame = first; frame <= last; ++frame) {
+    std::string path = std::filesystem::absolute(outputs.frame_path(frame, "png")).string();
+    for (std::size_t i = path.find('\''); i != std::string::npos; i = path.find('\'', i + 4))
+      path.replace(i, 1, "'\\''");
+    list += "file '" + path + "'\n";
+  }
+  return list;
 }
 
-std::vector<std::string> ffmpeg_command(const Shot& shot, int first, int last, const Outputs& outputs,
+std::vector<std::string> ffmpeg_command(const Shot& shot, int frames, const std::string& list,
                                         const std::string& target) {
-  const std::string pattern = escaped(outputs.path("")) + "%04d.png";
-  return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-y", "-framerate", fmt::format("{}", shot.settings.fps),
-          "-start_number", std::to_string(first), "-i", pattern, "-frames:v", std::to_string(last - first + 1),
+  return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-y", "-r", fmt::format("{}", shot.settings.fps), "-f",
+          "concat", "-safe", "0", "-i", list, "-frames:v", std::to_string(frames),
           // H.264 wants even sizes; yuv420p is what every player reads.
           "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p", "-c:v", "libx264", "-crf", "16", "-preset", "medium",
           "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", "-f", "mp4", target};
@@ -48,8 +53,12 @@ std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, 
   const ScopedStage stage(context.times, "encode");
   const auto start = std::chrono::steady_clock::now();
   AtomicFile movie(path, AtomicFile::Writer::Others);
+  AtomicFile list(path + ".frames", AtomicFile::Writer::Others);  // never committed: gone when the movie is made
+  const std::string frames = frame_list(first, last, outputs);
+  list.write(std::span(reinterpret_cast<const std::uint8_t*>(frames.data()), frames.size()));
   std::string said;
-  const int status = run_process(ffmpeg_command(shot, first, last, outputs, movie.temporary_path()), &said);
+  const int status =
+      run_process(ffmpeg_command(shot, last - first + 1, list.temporary_path(), movie.temporary_path()), &said);
   context.stop_if_cancelled();
   if (status == -1 || status == 127)
     throw work_error(fmt::format(

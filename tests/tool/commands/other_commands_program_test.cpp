@@ -134,6 +134,19 @@ TEST(DryRun, SaysWhatWouldBeDoneAndWritesNothing) {
   EXPECT_FALSE(exists(folder + "/out"));
 }
 
+TEST(DryRun, CountsWhatIsStored) {
+  const std::string folder = shot_folder("dry_stored");
+  const auto plan = [&](const std::string& more) {
+    return run(fmt::format("softreel render {0}/shot.toml --output {0}/out --dry-run {1}", folder, more)).out;
+  };
+  EXPECT_NE(plan("").find("simulate 4 of 4"), std::string::npos) << plan("");
+  run(fmt::format("softreel render {0}/shot.toml --output {0}/out --quiet --frames 1-3", folder));
+  EXPECT_NE(plan("").find("simulate 1 of 4"), std::string::npos) << plan("");
+  EXPECT_NE(plan("").find("trace 1 of 4"), std::string::npos) << plan("");
+  EXPECT_NE(plan("--set camera.azimuth_deg=3").find("trace 4 of 4"), std::string::npos);
+  EXPECT_NE(plan("--frames 2 --set camera.azimuth_deg=3").find("simulate 0 of 2"), std::string::npos);
+}
+
 TEST(Check, CountsTheSelectedPoints) {
   const std::string folder = shot_folder("check");
   const Outcome outcome = run(fmt::format("softreel check {0}/shot.toml", folder));

@@ -123,6 +123,16 @@ TEST(Render, EncodesAMovieOfAllFrames) {
   EXPECT_EQ(probe.out, "64,36,4\n") << probe.err;
 }
 
+TEST(Render, EncodesAMovieOfFramesBeforeZeroAndOfOddNames) {
+  const std::string folder = shot_folder("negative");
+  const std::string output = folder + "/\"it's 100%\"";  // as a shell reads it
+  render(folder, output, "--set output.movie=true --set shot.frames='[-2,1]'");
+  const Outcome probe = run(fmt::format(
+      "ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames -of csv=p=0 {}/ball.mp4",
+      output));
+  EXPECT_EQ(probe.out, "4\n") << probe.err;
+}
+
 TEST(Render, PrerollIsSimulatedButNotRendered) {
   const std::string folder = shot_folder("preroll");
   const json report = render(folder, folder + "/out", "--set shot.preroll=5");
