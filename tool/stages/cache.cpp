@@ -116,8 +116,8 @@ std::string Cache::path(const std::string& stage, const StageKey& key) const {
   return (fs::path(format_folder()) / stage / key).string();
 }
 
-std::string Cache::file_path(const std::string& extension, const StageKey& checksum) const {
-  return (fs::path(format_folder()) / "files" / (checksum + "." + extension)).string();
+std::string Cache::file_path(const StageKey& checksum) const {
+  return (fs::path(format_folder()) / "files" / checksum).string();
 }
 
 bool Cache::has(const std::string& stage, const StageKey& key) const {
@@ -229,10 +229,10 @@ Cache::Produced Cache::produce(const std::string& stage, const StageKey& key, co
   return result;
 }
 
-Cache::StoredFile Cache::store_file(const std::string& extension, const Bytes& bytes) const {
+Cache::StoredFile Cache::store_file(const Bytes& bytes) const {
   StoredFile stored{hash_bytes(bytes), false};
   store_or_say([&] {
-    const std::string target = file_path(extension, stored.checksum);
+    const std::string target = file_path(stored.checksum);
     std::error_code none;
     if (fs::is_regular_file(target, none) && fs::file_size(target, none) == bytes.size() &&
         hash_bytes(read_file(target)) == stored.checksum) {
@@ -247,8 +247,8 @@ Cache::StoredFile Cache::store_file(const std::string& extension, const Bytes& b
   return stored;
 }
 
-std::optional<Bytes> Cache::load_file(const std::string& extension, const StageKey& checksum) const {
-  const std::string source = file_path(extension, checksum);
+std::optional<Bytes> Cache::load_file(const StageKey& checksum) const {
+  const std::string source = file_path(checksum);
   std::error_code none;
   if (!fs::is_regular_file(source, none)) return std::nullopt;
   try {

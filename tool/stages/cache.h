@@ -1,9 +1,10 @@
 /// Results of stages on disk, found by their keys; a damaged file is said and recomputed, never used.
 ///
-/// Layout of the folder, format 2: 2/STAGE/KEY results with a header line that holds checksum and cost; 2/files/SUM.EXT
-/// pictures and other finished files as they are, named by their checksum; 2/uses who needs what (cache_use.h); 2/locks
-/// results that somebody is making. Several processes and machines may share it: files are written atomically and
-/// never changed, and of two that want the same result one makes it.
+/// Layout of the folder, format 2: 2/STAGE/KEY results with a header line that holds checksum and cost; 2/files/SUM
+/// pictures and other finished files as they are, named by their checksum alone (a search for *.png then finds the
+/// outputs and nothing else); 2/uses who needs what (cache_use.h); 2/locks results that somebody is making. Several
+/// processes and machines may share it: files are written atomically and never changed, and of two that want the same
+/// result one makes it.
 #pragma once
 
 #include <atomic>
@@ -70,10 +71,10 @@ class Cache {
     bool is_there = false;  ///< false if it could not be stored
   };
   /// Stores a finished file under its checksum; a no-op if it is there, whole.
-  StoredFile store_file(const std::string& extension, const Bytes& bytes) const;
+  StoredFile store_file(const Bytes& bytes) const;
   /// The bytes of a finished file, or nothing if it is not there or damaged (which is said).
-  std::optional<Bytes> load_file(const std::string& extension, const StageKey& checksum) const;
-  std::string file_path(const std::string& extension, const StageKey& checksum) const;
+  std::optional<Bytes> load_file(const StageKey& checksum) const;
+  std::string file_path(const StageKey& checksum) const;
 
   /// Why the result cannot be used, empty if it is sound or not there. Reads all of it.
   std::string damage(const std::string& stage, const StageKey& key) const;

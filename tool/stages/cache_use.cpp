@@ -109,7 +109,7 @@ void add_pointed_files(const Cache& cache, std::set<CacheItem>& items) {
   for (const CacheItem& item : items) {
     if (!item.starts_with(kPictureStage)) continue;
     const auto record = load_picture_record(cache, item.substr(std::string_view(kPictureStage).size() + 1));
-    if (record) files.insert(cache_item("files", record->checksum + "." + record->extension));
+    if (record) files.insert(cache_item("files", record->checksum));
   }
   items.merge(files);
 }

@@ -9,9 +9,8 @@
 
 namespace softreel {
 
-/// The file FILES/CHECKSUM.EXTENSION of the cache. Several keys may lead to one file: equal pictures are one file.
+/// The file files/CHECKSUM of the cache. Several keys may lead to one file: equal pictures are one file.
 struct PictureRecord {
-  std::string extension;  ///< "png", "exr", "half" (scene-linear, for developing again)
   StageKey checksum;
   double seconds = 0;  ///< what making it took
 };

@@ -84,12 +84,12 @@ bool PictureStage::recall(int frame, const StageKey& picture) {
   for (const File& file : files(frame, trace)) {
     const auto record = load_picture_record(context_.cache, file_key(file.extension, picture));
     if (!record) return false;
-    auto bytes = context_.cache.load_file(record->extension, record->checksum);
+    auto bytes = context_.cache.load_file(record->checksum);
     if (!bytes) return false;
     found.push_back({file, *record, std::move(*bytes)});
   }
   for (const Found& one : found) {
-    const std::string stored = context_.cache.file_path(one.record.extension, one.record.checksum);
+    const std::string stored = context_.cache.file_path(one.record.checksum);
     outputs_.link(one.file.path, one.file.key, stored, one.bytes, one.record.seconds);
     if (picture != trace) store_picture_record(context_.cache, one.file.key, one.record);
   }
@@ -105,13 +105,13 @@ bool PictureStage::develop(int frame, const StageKey& picture) {
   if (!shot_.output.png) return false;
   const auto linear = load_picture_record(context_.cache, file_key(kLinear, picture));
   if (!linear) return false;
-  const auto half = context_.cache.load_file(kLinear, linear->checksum);
+  const auto half = context_.cache.load_file(linear->checksum);
   if (!half) return false;
   // The display picture goes to the cache; then all files of the frame come from there, or the frame must be traced.
   const Bytes png = encode_display(*half);
-  const Cache::StoredFile stored = context_.cache.store_file("png", png);
+  const Cache::StoredFile stored = context_.cache.store_file(png);
   if (stored.is_there)
-    store_picture_record(context_.cache, file_key("png", picture), {"png", stored.checksum, linear->seconds});
+    store_picture_record(context_.cache, file_key("png", picture), {stored.checksum, linear->seconds});
   if (shot_.output.exr) return recall(frame, picture);
   place(files(frame, trace_key(frame)).front(), stored, png, linear->seconds);
   return true;
@@ -120,7 +120,7 @@ bool PictureStage::develop(int frame, const StageKey& picture) {
 /// Into the output folder: as a link to the stored file if that is there and whole, else written.
 void PictureStage::place(const File& file, const Cache::StoredFile& stored, const Bytes& bytes, double seconds) {
   if (stored.is_there)
-    outputs_.link(file.path, file.key, context_.cache.file_path(file.extension, stored.checksum), bytes, seconds);
+    outputs_.link(file.path, file.key, context_.cache.file_path(stored.checksum), bytes, seconds);
   else
     outputs_.write(file.path, file.key, bytes, seconds);
 }
@@ -134,10 +134,10 @@ Image PictureStage::trace(const Scene& scene) {
 void PictureStage::keep(int frame, const StageKey& content, const Image& image, double seconds) {
   const StageKey trace = trace_key(frame);
   const auto store = [&](const std::string& extension, const Bytes& bytes) {
-    const Cache::StoredFile stored = context_.cache.store_file(extension, bytes);
+    const Cache::StoredFile stored = context_.cache.store_file(bytes);
     if (stored.is_there)
       for (const StageKey& picture : {trace, content})
-        store_picture_record(context_.cache, file_key(extension, picture), {extension, stored.checksum, seconds});
+        store_picture_record(context_.cache, file_key(extension, picture), {stored.checksum, seconds});
     return stored;
   };
   const Bytes half = encode_half(image);
