@@ -11,6 +11,7 @@
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "core/base/thread_team.h"
 
 namespace softreel {
 
@@ -31,10 +32,13 @@ void rethrow_first(const std::vector<std::exception_ptr>& failures) {
 struct Threads::Arena {
   explicit Arena(int count)
       : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(count, processors()))),
-        arena(count) {}
+        arena(count) {
+    if (count > 1) team = std::make_unique<ThreadTeam>(count - 1);
+  }
   // Without it oneTBB grants no more threads than processors, and says so on standard error.
   tbb::global_control limit;
   tbb::task_arena arena;
+  std::unique_ptr<ThreadTeam> team;  ///< none for one thread
 };
 
 Threads::Threads(int count, const std::atomic<bool>* stop) : count_(count == 0 ? processors() : count), stop_(stop) {
@@ -61,16 +65,17 @@ void Threads::for_chunks(std::int64_t n, std::int64_t grain, const ChunkBody& bo
     return;
   }
   std::vector<std::exception_ptr> failures(static_cast<std::size_t>(chunks));
-  arena_->arena.execute([&] {
-    tbb::parallel_for(std::int64_t{0}, chunks, [&](std::int64_t k) {
-      try {
-        stop_if_asked();
-        body(k * grain, std::min(n, (k + 1) * grain));
-      } catch (...) {
-        failures[static_cast<std::size_t>(k)] = std::current_exception();
-      }
-    });
-  });
+  const auto run_chunk = [&](std::int64_t k) {
+    try {
+      stop_if_asked();
+      body(k * grain, std::min(n, (k + 1) * grain));
+    } catch (...) {
+      failures[static_cast<std::size_t>(k)] = std::current_exception();
+    }
+  };
+  // The team serves one loop at a time; loops beside it and inside of it share TBB's threads.
+  if (!arena_->team->run(chunks, run_chunk))
+    arena_->arena.execute([&] { tbb::parallel_for(std::int64_t{0}, chunks, run_chunk); });
   rethrow_first(failures);
 }
 

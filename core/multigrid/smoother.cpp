@@ -1,8 +1,10 @@
 #include "core/multigrid/smoother.h"
 
 #include <cmath>
+#include <type_traits>
 
 #include "core/base/check.h"
+#include "core/sparse/row_product_simd.h"
 
 namespace softreel {
 namespace {
@@ -22,13 +24,19 @@ struct Rows {
         inverse(inverses.data()) {}
 
   [[gnu::always_inline]] NodeLanes<Scalar> left_sum(std::int64_t i, const Scalar* x) const {
-    return column_major_row_product(values, columns, offsets[i], diagonal[i], x);
+    return sum(offsets[i], diagonal[i], x);
   }
   [[gnu::always_inline]] NodeLanes<Scalar> right_sum(std::int64_t i, const Scalar* x) const {
-    return column_major_row_product(values, columns, diagonal[i] + 1, offsets[i + 1], x);
+    return sum(diagonal[i] + 1, offsets[i + 1], x);
   }
   [[gnu::always_inline]] NodeLanes<Scalar> full_sum(std::int64_t i, const Scalar* x) const {
-    return column_major_row_product(values, columns, offsets[i], offsets[i + 1], x);
+    return sum(offsets[i], offsets[i + 1], x);
+  }
+  [[gnu::always_inline]] NodeLanes<Scalar> sum(std::int64_t begin, std::int64_t end, const Scalar* x) const {
+    if constexpr (std::is_same_v<Scalar, float>)
+      return paired_row_product(values, columns, begin, end, x);
+    else
+      return column_major_row_product(values, columns, begin, end, x);
   }
   /// The fourth lane of the result is 0 whatever that of rhs.
   [[gnu::always_inline]] NodeLanes<Scalar> solve_diagonal(std::int64_t i, const NodeLanes<Scalar>& rhs) const {
@@ -90,7 +98,7 @@ template <typename Scalar>
 template <typename RowUpdate>
 void Smoother<Scalar>::for_color(std::size_t color, const Threads& threads, const RowUpdate& update) const {
   const std::int64_t first = level_.color_offsets[color], count = level_.color_offsets[color + 1] - first;
-  threads.for_chunks(count, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(count, kSweepGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = first + begin; i < first + end; ++i) update(i);
   });
 }
@@ -148,7 +156,7 @@ template <typename Scalar>
 void Smoother<Scalar>::find_residual(const NodeVector<Scalar>& b, const NodeVector<Scalar>& x, NodeVector<Scalar>& r,
                                      const Threads& threads) const {
   const Rows<Scalar> rows(level_, matrix_, inverses_);
-  threads.for_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(level_.pattern.rows(), kSweepGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(b, i) - rows.full_sum(i, x.data());
   });
 }
@@ -157,7 +165,7 @@ template <typename Scalar>
 void Smoother<Scalar>::find_swept_residual(const NodeVector<Scalar>& x, NodeVector<Scalar>& r,
                                            const Threads& threads) const {
   const Rows<Scalar> rows(level_, matrix_, inverses_);
-  threads.for_chunks(level_.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(level_.pattern.rows(), kSweepGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(left_sums_, i) - rows.left_sum(i, x.data());
   });
 }

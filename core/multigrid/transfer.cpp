@@ -171,7 +171,7 @@ NodeLanes<Scalar> weighted_sum(const WeightMatrix& weights, std::int64_t i, cons
 template <typename Scalar>
 void restrict_to(const WeightMatrix& restriction, const NodeVector<Scalar>& fine, NodeVector<Scalar>& coarse,
                  const Threads& threads) {
-  threads.for_chunks(restriction.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(restriction.rows(), kSweepGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) lanes(coarse, i) = weighted_sum(restriction, i, fine);
   });
 }
@@ -179,7 +179,7 @@ void restrict_to(const WeightMatrix& restriction, const NodeVector<Scalar>& fine
 template <typename Scalar>
 void prolong_add(const WeightMatrix& prolongation, std::span<const std::uint8_t> fixed,
                  const NodeVector<Scalar>& coarse, NodeVector<Scalar>& fine, const Threads& threads) {
-  threads.for_chunks(prolongation.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(prolongation.rows(), kSweepGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)
       if (fixed.empty() || !fixed[static_cast<std::size_t>(i)]) lanes(fine, i) += weighted_sum(prolongation, i, coarse);
   });

@@ -135,7 +135,7 @@ void Cycle<Scalar>::correct_from_next(std::size_t h) {
     coarse.smoother->find_residual(coarse.b, coarse.correction, coarse.r, threads_);
     std::swap(coarse.b, coarse.r);
     cycle(h + 1);
-    threads_.for_chunks(coarse.structure.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    threads_.for_chunks(coarse.structure.pattern.rows(), kSweepGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) lanes(coarse.x, i) += lanes(coarse.correction, i);
     });
   }

@@ -22,8 +22,12 @@ using NodeVector = AlignedVector<Scalar>;
 template <typename Scalar>
 using NodeLanes = Eigen::Array<Scalar, 4, 1>;
 
-/// Rows per chunk of all node loops.
+/// Rows per chunk of node loops; that of sums decides their bits.
 inline constexpr std::int64_t kRowGrain = 512;
+
+/// Rows per chunk of loops that multiply matrix rows, of which a colour of a small level has some hundred: two
+/// microseconds of work each.
+inline constexpr std::int64_t kSweepGrain = 64;
 
 template <typename Scalar>
 Eigen::Map<const NodeLanes<Scalar>> lanes(const NodeVector<Scalar>& vector, std::int64_t node) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/sparse/row_product_simd.h"
 #include "tests/support/elastic_box.h"
 
 namespace softreel {
@@ -84,6 +85,22 @@ TYPED_TEST(BlockKernels, ColumnMajorProductAgreesWithPlainLoops) {
       for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(y[static_cast<Index>(c)], expected[4 * i + c], tolerance);
     }
   }
+}
+
+TEST(PairedRowProduct, AgreesWithItsPlainTwinForRowsOfAnyLength) {
+  std::mt19937 random(4);
+  const float tolerance = 200 * std::numeric_limits<float>::epsilon();
+  BlockMatrix<float> A = random_matrix<float>(40, random);
+  const NodeVector<float> x = random_vector<float>(40, random);
+  A.values.resize(A.values.size() + 3);
+  const Index* const columns = A.pattern.column_indices.data();
+  for (std::int64_t begin = 0; begin < 3; ++begin)
+    for (std::int64_t end = begin; end <= A.pattern.blocks(); ++end) {
+      const auto plain = column_major_row_product(A.values.data(), columns, begin, end, x.data());
+      const auto paired = paired_row_product(A.values.data(), columns, begin, end, x.data());
+      const auto scale = static_cast<float>(end - begin);
+      for (Index c = 0; c < 3; ++c) EXPECT_NEAR(paired[c], plain[c], tolerance * (1 + scale)) << begin << " " << end;
+    }
 }
 
 TYPED_TEST(BlockKernels, ResidualIsLoadMinusProduct) {
