@@ -53,6 +53,7 @@ Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params,
       multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern, params.multigrid, threads),
       float_assembler(model.mesh.tets, body.node_elements, multigrid.float_matrix().pattern, multigrid.row_of_node()),
       stresses(model.mesh.tets.size()) {
+  CHECK(params.newmark.is_stable());
   if (const std::string conflict = pins.find_conflict(); !conflict.empty()) throw input_error(conflict);
   for (const ElementMaterial& material : model.materials) damping_stiffness.push_back(material.damping_stiffness);
   state.positions = model.mesh.nodes;
@@ -128,6 +129,8 @@ void Simulator::set_state(SimulationState state) {
   CHECK(state.positions.size() == parts_->nodes());
   CHECK(state.velocities.size() == parts_->nodes());
   CHECK(state.rotations.size() == parts_->body.tets.size());
+  for (const auto* memory : {&state.previous_positions, &state.previous_velocities, &state.accelerations})
+    if (!memory->empty()) CHECK(memory->size() == parts_->nodes());
   parts_->state = std::move(state);
   parts_->coarse_lag.usable = false;
 }

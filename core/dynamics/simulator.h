@@ -18,9 +18,29 @@
 
 namespace softreel {
 
+/// How a step is taken (design 4.4): of first order, of second order with damping of what is too fast for the step, or
+/// of second order without (at NewmarkParams' defaults). Stored results are keyed by the numbers: new ones go last.
+enum class Integrator { Euler, Bdf2, Newmark };
+
+/// At gamma = 1/2 of second order, above it damped and of first; stable for any step if 2 beta >= gamma >= 1/2.
+struct NewmarkParams {
+  double beta = 0.25, gamma = 0.5;
+  bool is_stable() const { return gamma >= 0.5 && 2 * beta >= gamma; }
+};
+
+/// Where the one linear solve of a step takes rotations and forces (design 4.4). Keyed as above.
+enum class Linearize {
+  Auto,      ///< Start for Euler, else Predictor
+  Start,     ///< at the step's start, as in the paper: of first order, whatever the integrator
+  Predictor  ///< at x + h v + h^2 a / 2 (Euler, which knows no a: x + h v): keeps the integrator's order
+};
+
 struct SolverParams {
   RotationMethod rotation = RotationMethod::Consistent;
   Dilatation dilatation = Dilatation::Capped;
+  Integrator integrator = Integrator::Euler;
+  NewmarkParams newmark;
+  Linearize linearize = Linearize::Auto;
   int substeps = 1;                 ///< per frame
   double tolerance = 1e-3;          ///< of the linear solve of a step: |r| / |b|
   double force_tolerance = 1e-6;    ///< statics: |residual force| over the force scale of the body
@@ -28,6 +48,9 @@ struct SolverParams {
   int max_newton_iterations = 200;  ///< statics, per frame
   MultigridParams multigrid;
 };
+
+/// What Linearize::Auto stands for.
+Linearize linearization(const SolverParams& params);
 
 /// Everything the simulator knows of a body; immutable during a run.
 struct BodyModel {
@@ -41,11 +64,16 @@ struct BodyModel {
   Vec3 gravity = Vec3(0, -9.81, 0);  ///< m/s^2
 };
 
-/// All that changes from step to step: storing it and setting it again continues with the same bits.
+/// All that changes from step to step: storing it and setting it again continues with the same bits. The last four are
+/// the integrator's memory: empty and 0 before the first step and where it needs none.
 struct SimulationState {
-  std::vector<Vec3> positions;        ///< nodes x 3, m
-  std::vector<Vec3> velocities;       ///< nodes x 3, m/s
-  std::vector<Quaternion> rotations;  ///< per element, warm start of the next extraction
+  std::vector<Vec3> positions;              ///< nodes x 3, m
+  std::vector<Vec3> velocities;             ///< nodes x 3, m/s
+  std::vector<Quaternion> rotations;        ///< per element, warm start of the next extraction
+  std::vector<Vec3> previous_positions{};   ///< BDF2: before the last step, m
+  std::vector<Vec3> previous_velocities{};  ///< BDF2: before the last step, m/s
+  std::vector<Vec3> accelerations{};        ///< Newmark: nodes x 3, m/s^2
+  double previous_seconds = 0;              ///< BDF2, Newmark: length of the last step
 };
 
 /// What a step did. If it could not be solved, `culprit` names the element (with its centroid) or constraint to blame.
@@ -73,10 +101,12 @@ class Simulator {
 
   const BodyModel& model() const;
   const SimulationState& state() const;
+  /// The integrator's memory may be empty; then the next step is taken as a first one.
   void set_state(SimulationState state);
 
-  /// One implicit Euler step of `seconds` from the present state; constraints are those at `frame`, the step's end.
-  /// Nodes under a pin reach their targets exactly. On failure the state is left as it was.
+  /// One step of `seconds` from the present state; constraints are those at `frame`, the step's end. Nodes under a pin
+  /// reach their targets exactly. On failure the state is left as it was. BDF2's first step is one of Euler; Newmark's
+  /// starts from the acceleration that the forces give.
   StepReport step(double frame, double seconds);
 
   /// Static equilibrium under the constraints at `frame`, by Newton with line search and load stepping from the present

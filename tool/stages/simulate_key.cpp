@@ -4,7 +4,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give other frames.
-constexpr const char* kSimulationVersion = "simulation 3";
+constexpr const char* kSimulationVersion = "simulation 4";
 
 void add(KeyHasher& key, const Transform& t) {
   key.add(t.translate).add(t.rotate).add(t.scale);
@@ -26,6 +26,12 @@ void add_constraints(KeyHasher& key, const BodyConstraints& constraints, double 
   }
 }
 
+/// What the steps of a dynamic shot depend on; "auto" is the key of what it stands for.
+void add_steps(KeyHasher& key, const SolverParams& solver) {
+  key.add(solver.substeps).add(solver.tolerance).add(solver.integrator).add(linearization(solver));
+  if (solver.integrator == Integrator::Newmark) key.add(solver.newmark.beta).add(solver.newmark.gamma);
+}
+
 }  // namespace
 
 StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
@@ -35,7 +41,8 @@ StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraint
   const SolverParams& solver = shot.solver;
   key.add(solver.rotation).add(solver.dilatation).add(solver.max_iterations);
   if (shot.settings.mode == SimulationMode::Dynamic) {
-    key.add(shot.settings.fps).add(solver.substeps).add(solver.tolerance).add(shot.settings.start);
+    key.add(shot.settings.fps).add(shot.settings.start);
+    add_steps(key, solver);
   } else {
     key.add(shot.settings.independent);
   }

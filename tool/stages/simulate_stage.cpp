@@ -15,6 +15,10 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.positions);
   out.put_array(frame.state.velocities);
   out.put_array(frame.state.rotations);
+  out.put_array(frame.state.previous_positions);
+  out.put_array(frame.state.previous_velocities);
+  out.put_array(frame.state.accelerations);
+  out.put(frame.state.previous_seconds);
   out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
   for (const auto& step : frame.earlier_steps) out.put_array(step);
   return out.take();
@@ -26,6 +30,10 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
   frame.state.positions = in.get_array<Vec3>();
   frame.state.velocities = in.get_array<Vec3>();
   frame.state.rotations = in.get_array<Quaternion>();
+  frame.state.previous_positions = in.get_array<Vec3>();
+  frame.state.previous_velocities = in.get_array<Vec3>();
+  frame.state.accelerations = in.get_array<Vec3>();
+  frame.state.previous_seconds = in.get<double>();
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
   return frame;

@@ -76,6 +76,33 @@ TEST_F(Skipping, EachRotationOfTheElementsIsSimulatedAndKeptApart) {
     }
 }
 
+/// Simulated frames in a cache folder.
+std::vector<std::string> stored_states(const std::string& cache) {
+  std::vector<std::string> names = files_under(cache);
+  std::erase_if(names, [](const std::string& name) { return name.find("/simulation/") == std::string::npos; });
+  return names;
+}
+
+TEST_F(Skipping, AStoredFrameIsContinuedWithTheSameBitsByEveryIntegrator) {
+  start("integrators");
+  int number = 0;
+  for (const char* name : {"euler", "bdf2", "newmark"}) {
+    const std::string parts = fmt::format("{}/parts{}", folder_, number),
+                      whole = fmt::format("{}/whole{}", folder_, number++);
+    const std::string set = fmt::format("--set solver.integrator={} --set solver.substeps=2 --cache ", name);
+    EXPECT_EQ(run_shot(set + parts + " --frames 1-2", "simulate").computed, 2) << name;
+    const Work rest = run_shot(set + parts, "simulate");
+    EXPECT_EQ(rest.computed, 2) << name;
+    EXPECT_EQ(rest.loaded, 2) << name;
+    EXPECT_EQ(run_shot(set + whole, "simulate").computed, 4) << name;
+    const std::vector<std::string> states = stored_states(whole);
+    EXPECT_EQ(states.size(), 4u);
+    EXPECT_EQ(stored_states(parts), states);
+    for (const std::string& state : states)
+      EXPECT_TRUE(stored_content(parts + "/" + state) == stored_content(whole + "/" + state)) << name << " " << state;
+  }
+}
+
 TEST_F(Skipping, ALightOrTheCameraTracesAndDoesNotSimulate) {
   start("light");
   run_shot();

@@ -66,7 +66,9 @@ TEST(FrameKey, LooksChangeNothing) {
               s.camera.azimuth_deg = 0;
               s.materials["x"].appearance.roughness = 0;
               s.threads = 7;
-              s.solver.force_tolerance = 1e-9;  // of statics; this shot is dynamic and starts at rest
+              s.solver.force_tolerance = 1e-9;        // of statics; this shot is dynamic and starts at rest
+              s.solver.newmark.beta = 0.3;            // of another integrator
+              s.solver.linearize = Linearize::Start;  // what "auto" is for this one
             }),
             0);
 }
@@ -115,6 +117,8 @@ TEST(FrameKey, MaterialsOfRegionsCountWhereverTheirNumbersChange) {
 TEST(FrameKey, PhysicsChangesEveryFrame) {
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.substeps = 3; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.settings.fps = 25; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.integrator = Integrator::Newmark; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.linearize = Linearize::Predictor; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.rotation = RotationMethod::Energy; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.gravity.y() = -1.62; }), 1);
   EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].points = {0, 1}; }), 1);
