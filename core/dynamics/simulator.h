@@ -28,11 +28,12 @@ struct NewmarkParams {
   bool is_stable() const { return gamma >= 0.5 && 2 * beta >= gamma; }
 };
 
-/// Where the one linear solve of a step takes rotations and forces (design 4.4). Keyed as above.
+/// How often a step linearises, and where it takes rotations and forces (design 4.4). Keyed as above.
 enum class Linearize {
-  Auto,      ///< Start for Euler, else Predictor
-  Start,     ///< at the step's start, as in the paper: of first order, whatever the integrator
-  Predictor  ///< at x + h v + h^2 a / 2 (Euler, which knows no a: x + h v): keeps the integrator's order
+  Auto,       ///< Start for Euler, else Predictor
+  Start,      ///< once, at the step's start, as in the paper: of first order, whatever the integrator
+  Predictor,  ///< once, at x + h v + h^2 a / 2 (Euler, which knows no a: x + h v): keeps the integrator's order
+  Iterated    ///< Newton with line search until all forces balance at the step's end
 };
 
 struct SolverParams {
@@ -43,9 +44,9 @@ struct SolverParams {
   Linearize linearize = Linearize::Auto;
   int substeps = 1;                 ///< per frame
   double tolerance = 1e-3;          ///< of the linear solve of a step: |r| / |b|
-  double force_tolerance = 1e-6;    ///< statics: |residual force| over the force scale of the body
+  double force_tolerance = 1e-6;    ///< statics, iterated steps: |residual force| over the force scale of the body
   int max_iterations = 400;         ///< of one linear solve
-  int max_newton_iterations = 200;  ///< statics, per frame
+  int max_newton_iterations = 200;  ///< statics, per frame; iterated steps, per step
   MultigridParams multigrid;
 };
 

@@ -1,4 +1,4 @@
-/// One implicit step by one linear solve, eq. (2), for every integrator (design 4.4).
+/// One implicit step, by one linear solve, eq. (2), for every integrator, or iterated (design 4.4).
 ///
 /// With Rayleigh damping C = Ma + Kb (both per element), the integrator's bases x', v' and seconds t, r of TimeStep,
 /// and forces f linearised at positions x* with their rotations, the velocities v at the end have
@@ -76,7 +76,11 @@ SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
   return report;
 }
 
-SolveReport solve_step(Simulator::Parts& parts, StepWork& work) {
+SolveReport solve_once(Simulator::Parts& parts, StepWork& work) {
+  {
+    const ScopedStage stage(parts.times, "simulate/rotate");
+    find_rotations(parts.body, parts.params.rotation, work.positions, work.rotations, parts.threads);
+  }
   const double t = work.step.seconds.velocity;
   work.node_terms.resize(parts.nodes());
   for (std::size_t i = 0; i < work.node_terms.size(); ++i)
@@ -197,13 +201,12 @@ StepReport Simulator::Parts::step(double frame, double seconds) {
     return report;
   }
   const bool first = lacks_accelerations(params, state);
-  {
-    const ScopedStage stage(times, "simulate/rotate");
-    if (first) state.accelerations = find_accelerations(*this, work.pinned, work.pulls);
-    begin_step(*this, work, seconds);
-    find_rotations(body, params.rotation, work.positions, work.rotations, threads);
-  }
-  report.solve = solve_step(*this, work);
+  if (first) state.accelerations = find_accelerations(*this, work.pinned, work.pulls);
+  begin_step(*this, work, seconds);
+  if (linearization(params) == Linearize::Iterated)
+    report = iterate_step(*this, work);
+  else
+    report.solve = solve_once(*this, work);
   if (frame == std::floor(frame)) coarse_lag.usable = false;
   if (report.ok()) {
     SimulationState next = advanced(*this, work);

@@ -44,4 +44,8 @@ bool suits_float(Simulator::Parts& parts, const StepSeconds& seconds);
 /// does not do: then work.change means nothing, and the step is to be solved in double.
 SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work);
 
+/// Finds work.change, and the rotations at the step's end, by Newton to force balance; work.right_side becomes the
+/// unbalanced forces.
+StepReport iterate_step(Simulator::Parts& parts, StepWork& work);
+
 }  // namespace softreel

@@ -59,21 +59,23 @@ const Table<Shot>& solver_table() {
              "\"newmark\": share of the last acceleration in the way, halved. At least newmark_gamma / 2.")
         .add("newmark_gamma", of_newmark(&NewmarkParams::gamma), number({0.5, 1}), "",
              "\"newmark\": share of the last acceleration in the velocity. Above 0.5 it damps and is of first order.")
-        .add(
-            "linearize", of_solver(&P::linearize),
-            choice<Linearize>(
-                {{"auto", Linearize::Auto}, {"start", Linearize::Start}, {"predictor", Linearize::Predictor}}),
-            "",
-            "dynamic: rotations and forces of a step's one solve are those at its \"start\" (of first order) or at the "
-            "\"predictor\" of its end (keeps second order); \"auto\" is \"start\" for \"euler\", else \"predictor\".")
+        .add("linearize", of_solver(&P::linearize),
+             choice<Linearize>({{"auto", Linearize::Auto},
+                                {"start", Linearize::Start},
+                                {"predictor", Linearize::Predictor},
+                                {"iterated", Linearize::Iterated}}),
+             "",
+             "dynamic: a step's one solve takes rotations and forces at its \"start\" (of first order) or at the "
+             "\"predictor\" of its end (keeps second order); \"iterated\" solves until forces balance at its end. "
+             "\"auto\" is \"start\" for \"euler\", else \"predictor\".")
         .add("substeps", of_solver(&P::substeps), whole<int>(1, 10000), "per frame", "Steps of time in a frame.")
         .add("tolerance", of_solver(&P::tolerance), number(kTolerance), "",
              "dynamic: residual of a step's linear solve over its right-hand side.")
         .add("force_tolerance", of_solver(&P::force_tolerance), number(kTolerance), "",
-             "static: residual force over the body's scale of force.")
+             "static, iterated: residual force over the body's scale of force.")
         .add("max_iterations", of_solver(&P::max_iterations), whole<int>(1, 1000000), "", "Of one linear solve.")
         .add("max_newton_iterations", of_solver(&P::max_newton_iterations), whole<int>(1, 1000000), "",
-             "static: per frame.")
+             "static: per frame; iterated: per step.")
         .add(
             "galerkin", [](auto& s) -> auto& { return s.solver.multigrid.galerkin; },
             choice<GalerkinMethod>({{"gather", GalerkinMethod::Gather},

@@ -46,7 +46,8 @@ StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraint
   } else {
     key.add(shot.settings.independent);
   }
-  if (shot.settings.mode == SimulationMode::Static || shot.settings.start == StartState::Equilibrium)
+  const bool balances = shot.settings.start == StartState::Equilibrium || linearization(solver) == Linearize::Iterated;
+  if (shot.settings.mode == SimulationMode::Static || balances)
     key.add(solver.force_tolerance).add(solver.max_newton_iterations);
   key.add(solver.multigrid.galerkin);
   for (const Pin& pin : constraints.pins) key.add(pin.points);
