@@ -1,6 +1,7 @@
 /// One body in time: rotate, assemble, update, solve (the stages of the paper's Table 1).
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,7 +43,12 @@ struct SolverParams {
   Integrator integrator = Integrator::Euler;
   NewmarkParams newmark;
   Linearize linearize = Linearize::Auto;
-  int substeps = 1;                 ///< per frame
+  int substeps = 1;         ///< per frame; with step_error, the fewest
+  double step_error = 0;    ///< largest estimated error of a step over the body's size; 0: steps are fixed
+  int max_substeps = 1024;  ///< per frame, with step_error
+  /// A body at rest is not stepped: one whose nodes would all move less than this times its size by their velocities,
+  /// whose forces balance to force_tolerance and whose pins do not move. 0: every body is stepped.
+  double rest_tolerance = 1e-7;
   double tolerance = 1e-3;          ///< of the linear solve of a step: |r| / |b|
   double force_tolerance = 1e-6;    ///< statics, iterated steps: |residual force| over the force scale of the body
   int max_iterations = 400;         ///< of one linear solve
@@ -65,7 +71,7 @@ struct BodyModel {
   Vec3 gravity = Vec3(0, -9.81, 0);  ///< m/s^2
 };
 
-/// All that changes from step to step: storing it and setting it again continues with the same bits. The last four are
+/// All that changes from step to step: storing it and setting it again continues with the same bits. The last five are
 /// the integrator's memory: empty and 0 before the first step and where it needs none.
 struct SimulationState {
   std::vector<Vec3> positions;              ///< nodes x 3, m
@@ -74,13 +80,17 @@ struct SimulationState {
   std::vector<Vec3> previous_positions{};   ///< BDF2: before the last step, m
   std::vector<Vec3> previous_velocities{};  ///< BDF2: before the last step, m/s
   std::vector<Vec3> accelerations{};        ///< Newmark: nodes x 3, m/s^2
-  double previous_seconds = 0;              ///< BDF2, Newmark: length of the last step
+  double previous_error = 0;                ///< error control: of the last step, over the body's size
+  double previous_seconds = 0;              ///< BDF2, Newmark, error control: length of the last step
 };
 
 /// What a step did. If it could not be solved, `culprit` names the element (with its centroid) or constraint to blame.
 struct StepReport {
   SolveReport solve;
   int nonlinear_iterations = 1;
+  double error = 0;       ///< estimated, of the positions, over the body's size
+  bool rejected = false;  ///< the error is above the limit: the state was left as it was
+  bool at_rest = false;   ///< nothing was to be done: the state was left as it was
   std::string culprit;
   bool ok() const { return solve.ok(); }
 };
@@ -101,14 +111,19 @@ class Simulator {
   ~Simulator();
 
   const BodyModel& model() const;
+  const SolverParams& params() const;
   const SimulationState& state() const;
   /// The integrator's memory may be empty; then the next step is taken as a first one.
   void set_state(SimulationState state);
 
   /// One step of `seconds` from the present state; constraints are those at `frame`, the step's end. Nodes under a pin
   /// reach their targets exactly. On failure the state is left as it was. BDF2's first step is one of Euler; Newmark's
-  /// starts from the acceleration that the forces give.
-  StepReport step(double frame, double seconds);
+  /// starts from the acceleration that the forces give. A body at rest is left as it is, to the last bit.
+  ///
+  /// error_limit: over the body's size. The error is that of the integrator, estimated from the distance between the
+  /// step's end and the predictor of x + h v + h^2 a / 2 (Euler: x + h v); what Linearize::Start adds to it for an
+  /// integrator of second order is not in it.
+  StepReport step(double frame, double seconds, double error_limit = std::numeric_limits<double>::infinity());
 
   /// Static equilibrium under the constraints at `frame`, by Newton with line search and load stepping from the present
   /// state; velocities become zero. A body without pins or pulls under no load keeps its rigid placement. On failure

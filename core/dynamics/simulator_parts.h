@@ -53,6 +53,7 @@ struct Simulator::Parts {
   std::vector<double> damping_stiffness;  ///< per element, s
   StepSeconds float_seconds;              ///< those that float_ratio was found for
   double float_ratio = 0;                 ///< see suits_float
+  double body_size = 0;                   ///< of the body at rest, m: what errors and rest are relative to
   SimulationState state;
 
   CoarseLag coarse_lag;
@@ -73,7 +74,7 @@ struct Simulator::Parts {
   /// Names the first element whose shape or force is not a number, or else the node with the greatest entry of `blame`.
   std::string find_culprit(std::span<const Vec3> positions, std::span<const Vec3> blame) const;
 
-  StepReport step(double frame, double seconds);
+  StepReport step(double frame, double seconds, double error_limit);
   StepReport find_equilibrium(double frame);
 };
 

@@ -151,6 +151,22 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
   return next;
 }
 
+/// Makes the step's end the state, unless it is not finite or its error is too great.
+void accept_or_reject(Simulator::Parts& parts, StepWork& work, double error_limit, StepReport& report) {
+  SimulationState next = advanced(parts, work);
+  if (!all_finite(next.positions) || !all_finite(next.velocities)) {
+    report.solve.status = SolveStatus::Breakdown;
+    return;
+  }
+  if (std::isfinite(error_limit)) {
+    report.error =
+        estimate_error(parts.params, parts.state, work.step.h, work.pinned.held, next.positions) / parts.body_size;
+    report.rejected = report.error > error_limit;
+    next.previous_error = report.error;
+  }
+  if (!report.rejected) parts.state = std::move(next);
+}
+
 }  // namespace
 
 void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities,
@@ -192,12 +208,19 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work) {
   }
 }
 
-StepReport Simulator::Parts::step(double frame, double seconds) {
+StepReport Simulator::Parts::step(double frame, double seconds, double error_limit) {
   StepWork work{{}, pins.at(frame), pulls_at(frame), {}, state.rotations, {}, {}, {}, {}, {}};
   StepReport report;
   if (!work.pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
     report.culprit = work.pinned.conflict;
+    return report;
+  }
+  const bool ends_frame = frame == std::floor(frame);
+  if (is_at_rest(*this, work.pinned, work.pulls, seconds)) {
+    if (ends_frame) coarse_lag.usable = false;
+    report.nonlinear_iterations = 0;
+    report.at_rest = true;
     return report;
   }
   const bool first = lacks_accelerations(params, state);
@@ -207,17 +230,10 @@ StepReport Simulator::Parts::step(double frame, double seconds) {
     report = iterate_step(*this, work);
   else
     report.solve = solve_once(*this, work);
-  if (frame == std::floor(frame)) coarse_lag.usable = false;
-  if (report.ok()) {
-    SimulationState next = advanced(*this, work);
-    if (all_finite(next.positions) && all_finite(next.velocities)) {
-      state = std::move(next);
-      return report;
-    }
-    report.solve.status = SolveStatus::Breakdown;
-  }
-  if (first) state.accelerations.clear();
-  report.culprit = find_culprit(state.positions, work.right_side);
+  if (ends_frame) coarse_lag.usable = false;
+  if (report.ok()) accept_or_reject(*this, work, error_limit, report);
+  if (first && (!report.ok() || report.rejected)) state.accelerations.clear();
+  if (!report.ok()) report.culprit = find_culprit(state.positions, work.right_side);
   return report;
 }
 

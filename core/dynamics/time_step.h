@@ -39,6 +39,10 @@ HeldNode find_held_motion(const SolverParams& params, const SimulationState& sta
 /// Where the nodes would be after the step if nothing changed, for Linearize::Predictor.
 std::vector<Vec3> predict_positions(const SolverParams& params, const SimulationState& state, double h);
 
+/// Greatest estimated error of the free nodes' `positions` at the end of a step of h seconds from `state`, m.
+double estimate_error(const SolverParams& params, const SimulationState& state, double h,
+                      std::span<const std::uint8_t> held, std::span<const Vec3> positions);
+
 /// The integrator's memory of `before`, in `after`. velocities of free nodes in `after` are those of the step's end.
 void remember(const SolverParams& params, const TimeStep& step, const SimulationState& before,
               std::span<const std::uint8_t> held, std::span<const Vec3> targets, SimulationState& after);
