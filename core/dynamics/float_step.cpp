@@ -24,19 +24,20 @@ constexpr double kLeastTolerance = 1e-7;
 constexpr double kGreatestRatio = 3e4;
 
 /// Greatest mean diagonal entry of K's share in S over the mass part of S, of all nodes. A rotation does not change it.
-double stiffness_over_mass(const Simulator::Parts& parts, double h) {
+double stiffness_over_mass(const Simulator::Parts& parts, const StepSeconds& seconds) {
   std::vector<double> traces(parts.nodes(), 0.0);
   for (std::size_t e = 0; e < parts.body.tets.size(); ++e) {
     const ElementShape& shape = parts.body.shapes[e];
     const double modulus = parts.body.laws[e].lambda + 4 * parts.body.laws[e].mu;
-    const double factor = h * (h + parts.damping_stiffness[e]) * shape.volume * modulus;
+    const double factor = seconds.velocity * (seconds.position + parts.damping_stiffness[e]) * shape.volume * modulus;
     for (std::size_t k = 0; k < 4; ++k)
       traces[static_cast<std::size_t>(parts.body.tets[e][k])] +=
           factor * shape.gradients.col(static_cast<Index>(k)).squaredNorm();
   }
   double greatest = 0;
   for (std::size_t i = 0; i < traces.size(); ++i)
-    greatest = std::max(greatest, traces[i] / (3 * (parts.masses.mass[i] + h * parts.masses.damping[i])));
+    greatest =
+        std::max(greatest, traces[i] / (3 * (parts.masses.mass[i] + seconds.velocity * parts.masses.damping[i])));
   return greatest;
 }
 
@@ -58,43 +59,6 @@ void add_pull_stiffness(const ActivePull& pull, std::span<const Vec3> positions,
         const auto value = static_cast<float>(factor * spring.stiffness * spring.weights[i] * spring.weights[j]);
         for (int c = 0; c < 3; ++c) block[4 * c] += value;
       }
-}
-
-/// forces -= scale * (secant) stiffness of a pull * velocities.
-void subtract_pull_product(const ActivePull& pull, std::span<const Vec3> positions, double scale,
-                           std::span<const Vec3> velocities, std::span<Vec3> forces) {
-  const double factor = scale * pull_factor(pull, positions);
-  for (const Spring& spring : pull.springs) {
-    Vec3 velocity = Vec3::Zero();
-    for (std::size_t k = 0; k < 4; ++k)
-      velocity += spring.weights[k] * velocities[static_cast<std::size_t>(spring.nodes[k])];
-    for (std::size_t k = 0; k < 4; ++k)
-      forces[static_cast<std::size_t>(spring.nodes[k])] -= factor * spring.stiffness * spring.weights[k] * velocity;
-  }
-}
-
-/// h f + M v - S (v + d) for the change d in `change`, which may be empty: the right side of the step, or what is left
-/// of it. velocities: v + d. On the way parts.step_terms.
-void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> velocities,
-                   std::span<const Vec3> change, std::span<Vec3> residual) {
-  const double h = work.h;
-  const std::span<const Vec3> positions = parts.state.positions;
-  find_step_terms(parts.body, {positions, velocities, work.rotations, h, parts.damping_stiffness}, parts.step_terms,
-                  parts.threads);
-  gather_step_forces(parts.body.node_elements, parts.step_terms, residual, parts.threads);
-  const Vec3 gravity = h * parts.model.gravity;
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    residual[i] += parts.masses.mass[i] * gravity - h * parts.masses.damping[i] * work.velocities[i];
-    if (!change.empty()) residual[i] -= work.node_terms[i] * change[i];
-  }
-  for (const ActivePull& pull : work.pulls) {
-    std::vector<Vec3> forces(residual.size(), Vec3::Zero());
-    add_pull_forces(pull, positions, forces);
-    for (std::size_t i = 0; i < residual.size(); ++i) residual[i] += h * forces[i];
-    subtract_pull_product(pull, positions, h * h, velocities, residual);
-  }
-  for (std::size_t i = 0; i < residual.size(); ++i)
-    if (work.pinned.held[i] != 0) residual[i].setZero();
 }
 
 void add(std::span<const Vec3> a, std::span<const Vec3> b, std::span<Vec3> sum) {
@@ -128,10 +92,10 @@ SolveReport refine(Simulator::Parts& parts, StepWork& work, double target, std::
 
 }  // namespace
 
-bool suits_float(Simulator::Parts& parts, double h) {
-  if (parts.float_seconds != h) {
-    parts.float_seconds = h;
-    parts.float_ratio = stiffness_over_mass(parts, h);
+bool suits_float(Simulator::Parts& parts, const StepSeconds& seconds) {
+  if (parts.float_seconds != seconds) {
+    parts.float_seconds = seconds;
+    parts.float_ratio = stiffness_over_mass(parts, seconds);
   }
   return parts.params.tolerance >= kLeastTolerance && parts.float_ratio <= kGreatestRatio;
 }
@@ -139,6 +103,7 @@ bool suits_float(Simulator::Parts& parts, double h) {
 SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work) {
   SolveReport report{SolveStatus::Breakdown, 0, 0, false};
   const std::size_t n = parts.nodes();
+  const StepSeconds& seconds = work.step.seconds;
   work.right_side.resize(n);
   work.change.assign(n, Vec3::Zero());
   {
@@ -147,12 +112,12 @@ SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work) {
     BlockMatrixf& matrix = parts.multigrid.float_matrix();
     parts.float_assembler.assemble(parts.step_terms, work.node_terms, matrix, parts.threads);
     for (const ActivePull& pull : work.pulls)
-      add_pull_stiffness(pull, parts.state.positions, work.h * work.h, parts.multigrid);
+      add_pull_stiffness(pull, work.positions, seconds.velocity * seconds.position, parts.multigrid);
   }
   const double scale = norm(work.right_side);
   if (!std::isfinite(scale)) return report;
   CoarseLag& lag = parts.coarse_lag;
-  const bool keep_coarse = lag.allows(work.h, work.pinned.held);
+  const bool keep_coarse = lag.allows(seconds, work.pinned.held);
   lag.usable = false;
   {
     const ScopedStage stage(parts.times, "simulate/update");
@@ -164,7 +129,7 @@ SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work) {
   for (std::size_t i = 0; i < n; ++i) residual[i] -= work.node_terms[i] * work.change[i];
   report = refine(parts, work, parts.params.tolerance * scale, residual);
   correct_translations(parts, work);
-  if (!keep_coarse) lag = {false, work.h, work.pinned.held, report.iterations, 0};
+  if (!keep_coarse) lag = {false, seconds, work.pinned.held, report.iterations, 0};
   lag.last_iterations = report.iterations;
   lag.usable = report.ok();
   if (scale > 0) report.residual /= scale;

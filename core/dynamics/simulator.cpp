@@ -18,6 +18,16 @@ std::vector<double> youngs_moduli(const std::vector<ElementMaterial>& materials)
   return moduli;
 }
 
+/// Diagonal of the box around the nodes, m.
+double box_diagonal(const std::vector<Vec3>& nodes) {
+  Vec3 low = nodes.front(), high = low;
+  for (const Vec3& node : nodes) {
+    low = low.cwiseMin(node);
+    high = high.cwiseMax(node);
+  }
+  return (high - low).norm();
+}
+
 /// Checks what the simulator divides by, and returns the model.
 BodyModel checked(BodyModel model) {
   const TetMesh& mesh = model.mesh;
@@ -52,7 +62,9 @@ Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params,
       assembler(model.mesh.tets, matrix.pattern),
       multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern, params.multigrid, threads),
       float_assembler(model.mesh.tets, body.node_elements, multigrid.float_matrix().pattern, multigrid.row_of_node()),
+      body_size(box_diagonal(model.mesh.nodes)),
       stresses(model.mesh.tets.size()) {
+  CHECK(params.newmark.is_stable());
   if (const std::string conflict = pins.find_conflict(); !conflict.empty()) throw input_error(conflict);
   for (const ElementMaterial& material : model.materials) damping_stiffness.push_back(material.damping_stiffness);
   state.positions = model.mesh.nodes;
@@ -120,6 +132,10 @@ const BodyModel& Simulator::model() const {
   return parts_->model;
 }
 
+const SolverParams& Simulator::params() const {
+  return parts_->params;
+}
+
 const SimulationState& Simulator::state() const {
   return parts_->state;
 }
@@ -128,13 +144,15 @@ void Simulator::set_state(SimulationState state) {
   CHECK(state.positions.size() == parts_->nodes());
   CHECK(state.velocities.size() == parts_->nodes());
   CHECK(state.rotations.size() == parts_->body.tets.size());
+  for (const auto* memory : {&state.previous_positions, &state.previous_velocities, &state.accelerations})
+    if (!memory->empty()) CHECK(memory->size() == parts_->nodes());
   parts_->state = std::move(state);
   parts_->coarse_lag.usable = false;
 }
 
-StepReport Simulator::step(double frame, double seconds) {
+StepReport Simulator::step(double frame, double seconds, double error_limit) {
   CHECK(seconds > 0);
-  return parts_->step(frame, seconds);
+  return parts_->step(frame, seconds, error_limit);
 }
 
 StepReport Simulator::find_equilibrium(double frame) {

@@ -1,6 +1,7 @@
 /// One body in time: rotate, assemble, update, solve (the stages of the paper's Table 1).
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,16 +19,45 @@
 
 namespace softreel {
 
+/// How a step is taken (design 4.4): of first order, of second order with damping of what is too fast for the step, or
+/// of second order without (at NewmarkParams' defaults). Stored results are keyed by the numbers: new ones go last.
+enum class Integrator { Euler, Bdf2, Newmark };
+
+/// At gamma = 1/2 of second order, above it damped and of first; stable for any step if 2 beta >= gamma >= 1/2.
+struct NewmarkParams {
+  double beta = 0.25, gamma = 0.5;
+  bool is_stable() const { return gamma >= 0.5 && 2 * beta >= gamma; }
+};
+
+/// How often a step linearises, and where it takes rotations and forces (design 4.4). Keyed as above.
+enum class Linearize {
+  Auto,       ///< Start for Euler, else Predictor
+  Start,      ///< once, at the step's start, as in the paper: of first order, whatever the integrator
+  Predictor,  ///< once, at x + h v + h^2 a / 2 (Euler, which knows no a: x + h v): keeps the integrator's order
+  Iterated    ///< Newton with line search until all forces balance at the step's end
+};
+
 struct SolverParams {
   RotationMethod rotation = RotationMethod::Consistent;
   Dilatation dilatation = Dilatation::Capped;
-  int substeps = 1;                 ///< per frame
+  Integrator integrator = Integrator::Euler;
+  NewmarkParams newmark;
+  Linearize linearize = Linearize::Auto;
+  int substeps = 1;         ///< per frame; with step_error, the fewest
+  double step_error = 0;    ///< largest estimated error of a step over the body's size; 0: steps are fixed
+  int max_substeps = 1024;  ///< per frame, with step_error
+  /// A body at rest is not stepped: one whose nodes would all move less than this times its size by their velocities,
+  /// whose forces balance to force_tolerance and whose pins do not move. 0: every body is stepped.
+  double rest_tolerance = 1e-7;
   double tolerance = 1e-3;          ///< of the linear solve of a step: |r| / |b|
-  double force_tolerance = 1e-6;    ///< statics: |residual force| over the force scale of the body
+  double force_tolerance = 1e-6;    ///< statics, iterated steps: |residual force| over the force scale of the body
   int max_iterations = 400;         ///< of one linear solve
-  int max_newton_iterations = 200;  ///< statics, per frame
+  int max_newton_iterations = 200;  ///< statics, per frame; iterated steps, per step
   MultigridParams multigrid;
 };
+
+/// What Linearize::Auto stands for.
+Linearize linearization(const SolverParams& params);
 
 /// Everything the simulator knows of a body; immutable during a run.
 struct BodyModel {
@@ -41,17 +71,26 @@ struct BodyModel {
   Vec3 gravity = Vec3(0, -9.81, 0);  ///< m/s^2
 };
 
-/// All that changes from step to step: storing it and setting it again continues with the same bits.
+/// All that changes from step to step: storing it and setting it again continues with the same bits. The last five are
+/// the integrator's memory: empty and 0 before the first step and where it needs none.
 struct SimulationState {
-  std::vector<Vec3> positions;        ///< nodes x 3, m
-  std::vector<Vec3> velocities;       ///< nodes x 3, m/s
-  std::vector<Quaternion> rotations;  ///< per element, warm start of the next extraction
+  std::vector<Vec3> positions;              ///< nodes x 3, m
+  std::vector<Vec3> velocities;             ///< nodes x 3, m/s
+  std::vector<Quaternion> rotations;        ///< per element, warm start of the next extraction
+  std::vector<Vec3> previous_positions{};   ///< BDF2: before the last step, m
+  std::vector<Vec3> previous_velocities{};  ///< BDF2: before the last step, m/s
+  std::vector<Vec3> accelerations{};        ///< Newmark: nodes x 3, m/s^2
+  double previous_error = 0;                ///< error control: of the last step, over the body's size
+  double previous_seconds = 0;              ///< BDF2, Newmark, error control: length of the last step
 };
 
 /// What a step did. If it could not be solved, `culprit` names the element (with its centroid) or constraint to blame.
 struct StepReport {
   SolveReport solve;
   int nonlinear_iterations = 1;
+  double error = 0;       ///< estimated, of the positions, over the body's size
+  bool rejected = false;  ///< the error is above the limit: the state was left as it was
+  bool at_rest = false;   ///< nothing was to be done: the state was left as it was
   std::string culprit;
   bool ok() const { return solve.ok(); }
 };
@@ -72,12 +111,19 @@ class Simulator {
   ~Simulator();
 
   const BodyModel& model() const;
+  const SolverParams& params() const;
   const SimulationState& state() const;
+  /// The integrator's memory may be empty; then the next step is taken as a first one.
   void set_state(SimulationState state);
 
-  /// One implicit Euler step of `seconds` from the present state; constraints are those at `frame`, the step's end.
-  /// Nodes under a pin reach their targets exactly. On failure the state is left as it was.
-  StepReport step(double frame, double seconds);
+  /// One step of `seconds` from the present state; constraints are those at `frame`, the step's end. Nodes under a pin
+  /// reach their targets exactly. On failure the state is left as it was. BDF2's first step is one of Euler; Newmark's
+  /// starts from the acceleration that the forces give. A body at rest is left as it is, to the last bit.
+  ///
+  /// error_limit: over the body's size. The error is that of the integrator, estimated from the distance between the
+  /// step's end and the predictor of x + h v + h^2 a / 2 (Euler: x + h v); what Linearize::Start adds to it for an
+  /// integrator of second order is not in it.
+  StepReport step(double frame, double seconds, double error_limit = std::numeric_limits<double>::infinity());
 
   /// Static equilibrium under the constraints at `frame`, by Newton with line search and load stepping from the present
   /// state; velocities become zero. A body without pins or pulls under no load keeps its rigid placement. On failure

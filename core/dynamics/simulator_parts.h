@@ -20,13 +20,13 @@ namespace softreel {
 /// precondition well. Every frame starts with new ones, so that a run resumed from a stored frame has the same bits.
 struct CoarseLag {
   bool usable = false;             ///< the coarse levels are of an earlier step of this frame
-  double seconds = 0;              ///< length of that step
+  StepSeconds seconds;             ///< of that step
   std::vector<std::uint8_t> held;  ///< nodes that were held
   int first_iterations = 0;        ///< of the step that made them
   int last_iterations = 0;         ///< of the last step
 
   /// True if the next step may keep them: the same system but for the rotations, and hardly more iterations.
-  bool allows(double step_seconds, const std::vector<std::uint8_t>& step_held) const {
+  bool allows(const StepSeconds& step_seconds, const std::vector<std::uint8_t>& step_held) const {
     return usable && seconds == step_seconds && held == step_held &&
            last_iterations <= first_iterations + 1 + first_iterations / 8;
   }
@@ -51,8 +51,9 @@ struct Simulator::Parts {
   Multigrid multigrid;
   FloatAssembler float_assembler;
   std::vector<double> damping_stiffness;  ///< per element, s
-  double float_seconds = 0;               ///< length of step that float_ratio was found for
+  StepSeconds float_seconds;              ///< those that float_ratio was found for
   double float_ratio = 0;                 ///< see suits_float
+  double body_size = 0;                   ///< of the body at rest, m: what errors and rest are relative to
   SimulationState state;
 
   CoarseLag coarse_lag;
@@ -73,7 +74,7 @@ struct Simulator::Parts {
   /// Names the first element whose shape or force is not a number, or else the node with the greatest entry of `blame`.
   std::string find_culprit(std::span<const Vec3> positions, std::span<const Vec3> blame) const;
 
-  StepReport step(double frame, double seconds);
+  StepReport step(double frame, double seconds, double error_limit);
   StepReport find_equilibrium(double frame);
 };
 

@@ -28,6 +28,13 @@ double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   return sum;
 }
 
+/// True if no position would change by more than its rounding.
+bool is_negligible(std::span<const Vec3> direction, std::span<const Vec3> positions) {
+  for (std::size_t i = 0; i < direction.size(); ++i)
+    if (!(direction[i].norm() <= std::numeric_limits<double>::epsilon() * positions[i].norm())) return false;
+  return true;
+}
+
 bool is_positive(double x) {
   return x > 0;  // false for not a number
 }
@@ -59,13 +66,24 @@ std::vector<double> rigid_shifts(const Simulator::Parts& parts, std::span<const 
 }  // namespace
 
 StaticSolver::StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t> held,
-                           std::span<const std::uint8_t> held_pieces, const std::vector<ActivePull>& pulls)
+                           std::span<const std::uint8_t> held_pieces, const std::vector<ActivePull>& pulls,
+                           const StepPotential* potential)
     : parts_(parts),
       held_(held),
       held_pieces_(held_pieces),
       pulls_(pulls),
+      potential_(potential),
       shares_(parts.body.tets.size(), 1.0),
-      node_terms_(rigid_shifts(parts, held)) {}
+      node_terms_(potential != nullptr ? potential->weights : rigid_shifts(parts, held)) {}
+
+/// Adds the step's forces to those of the state; returns its energy.
+double StaticSolver::add_potential(StaticState& state) {
+  if (potential_ == nullptr) return 0;
+  step_forces_.resize(state.positions.size());
+  const double energy = potential_->evaluate(state.positions, step_forces_, parts_.threads);
+  for (std::size_t i = 0; i < step_forces_.size(); ++i) state.forces[i] += step_forces_[i];
+  return energy;
+}
 
 void StaticSolver::evaluate(StaticState& state) {
   {
@@ -77,14 +95,15 @@ void StaticSolver::evaluate(StaticState& state) {
   find_stresses(parts_.body, state.positions, state.rotations, parts_.stresses, parts_.threads);
   parts_.gather_all_forces(state.positions, pulls_, state.forces);
   const double elastic = elastic_energy(parts_.body, state.positions, state.rotations, parts_.threads);
-  double weight = 0, terms = std::abs(elastic);
+  const double step = add_potential(state);
+  double weight = 0, terms = std::abs(elastic) + std::abs(step);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     const double part = parts_.masses.mass[i] * parts_.model.gravity.dot(state.positions[i]);
     weight += part;
     terms += std::abs(part);
     if (held_[i] != 0) state.forces[i].setZero();
   }
-  state.energy = elastic - weight;
+  state.energy = elastic - weight + step;
   for (const ActivePull& pull : pulls_) state.energy += pull_energy(pull, state.positions);
   terms += std::abs(state.energy);
   state.energy_noise = 100 * std::numeric_limits<double>::epsilon() * terms;
@@ -111,7 +130,11 @@ void StaticSolver::measure_scales(StaticState& state) const {
   }
   double scale = 0, error = 0;
   for (std::size_t i = 0; i < magnitudes.size(); ++i) {
-    const double magnitude = magnitudes[i] + parts_.masses.mass[i] * parts_.model.gravity.norm();
+    double magnitude = magnitudes[i] + parts_.masses.mass[i] * parts_.model.gravity.norm();
+    if (potential_ != nullptr) {
+      magnitude += step_forces_[i].norm();
+      errors[i] += std::numeric_limits<double>::epsilon() * potential_->weights[i] * state.positions[i].norm();
+    }
     scale += magnitude * magnitude;
     error += errors[i] * errors[i];
   }
@@ -126,6 +149,9 @@ void StaticSolver::assemble(const StaticState& state, Curvature curvature) {
                        parts_.threads);
   parts_.assembler.assemble(parts_.terms, node_terms_, parts_.matrix, parts_.threads);
   for (const ActivePull& pull : pulls_) add_pull_stiffness(pull, state.positions, 1.0, parts_.matrix);
+  if (potential_ == nullptr || !potential_->has_damping_stiffness()) return;
+  const AlignedVector<double>& damping = potential_->damping_stiffness.values;
+  for (std::size_t k = 0; k < damping.size(); ++k) parts_.matrix.values[k] += damping[k];
 }
 
 SolveReport StaticSolver::solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
@@ -255,6 +281,7 @@ SolveReport StaticSolver::solve(StaticState& state, std::span<const Vec3> target
     const double linear =
         std::clamp(std::max(0.1 * relative, 0.3 * tolerance / relative), kBestLinearTolerance, kWorstLinearTolerance);
     if (!find_direction(state, linear, direction)) return finish(SolveStatus::Breakdown);
+    if (is_negligible(direction, state.positions)) return finish(SolveStatus::RoundOff);
     if (!search_line(state, direction))
       return finish(state.residual <= 100 * state.round_off ? SolveStatus::RoundOff : SolveStatus::Breakdown);
   }

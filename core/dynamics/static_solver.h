@@ -1,10 +1,12 @@
-/// Newton's method for the static equilibrium of a body whose held nodes are where they are (design 4.4).
+/// Newton's method for the equilibrium of a body whose held nodes are where they are, static or of a time step (design
+/// 4.4).
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "core/dynamics/simulator_parts.h"
+#include "core/dynamics/step_potential.h"
 
 namespace softreel {
 
@@ -13,7 +15,7 @@ struct StaticState {
   std::vector<Vec3> positions;
   std::vector<Quaternion> rotations;
   std::vector<Vec3> forces;  ///< unbalanced, N; zero on held nodes
-  double energy = 0;         ///< elastic, gravity and pulls, J
+  double energy = 0;         ///< elastic, gravity, pulls and the step's potential, J
   double energy_noise = 0;   ///< round-off of energy, J
   double residual = 0;       ///< norm of forces
   double scale = 0;          ///< norm over nodes of the summed magnitudes of the forces that balance there
@@ -23,9 +25,10 @@ struct StaticState {
 /// One search for equilibrium under fixed constraints.
 class StaticSolver {
  public:
-  /// held: per node; held_pieces: by a pin or pull; pulls: at the frame. Everything is kept by reference.
+  /// held: per node; held_pieces: by a pin, a pull or inertia; pulls: at the frame; potential: that of a time step,
+  /// null in statics. Everything is kept by reference.
   StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t> held, std::span<const std::uint8_t> held_pieces,
-               const std::vector<ActivePull>& pulls);
+               const std::vector<ActivePull>& pulls, const StepPotential* potential = nullptr);
 
   /// Moves the held nodes of `start` to `targets` by one full step of the linearised body, then iterates until
   /// |forces| <= tolerance * scale or round-off. The result is in `state`, converged or not.
@@ -47,14 +50,17 @@ class StaticSolver {
   bool search_line(StaticState& state, std::span<const Vec3> direction);
   bool move_held(StaticState& state, std::span<const Vec3> targets);
   bool improves(const StaticState& from, const StaticState& to, double step, double slope) const;
+  double add_potential(StaticState& state);
   void measure_scales(StaticState& state) const;
 
   Simulator::Parts& parts_;
   std::span<const std::uint8_t> held_;
   std::span<const std::uint8_t> held_pieces_;
   const std::vector<ActivePull>& pulls_;
+  const StepPotential* potential_;
   std::vector<double> shares_;      ///< 1 per element
-  std::vector<double> node_terms_;  ///< holds the rigid motions of pieces without a pin
+  std::vector<double> node_terms_;  ///< inertia; in statics, what holds the rigid motions of pieces without a pin
+  std::vector<Vec3> step_forces_;   ///< of the potential at the state that was last evaluated, N
   bool unstable_ = false;           ///< the exact tangent gave no direction of descent at the present state
   int iterations_ = 0;
   int linear_iterations_ = 0;

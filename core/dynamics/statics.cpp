@@ -94,9 +94,7 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
     report.culprit = find_culprit(next.positions, next.forces);
     return report;
   }
-  state.positions = std::move(next.positions);
-  state.rotations = std::move(next.rotations);
-  std::fill(state.velocities.begin(), state.velocities.end(), Vec3::Zero());
+  state = {std::move(next.positions), std::vector<Vec3>(nodes(), Vec3::Zero()), std::move(next.rotations)};
   return report;
 }
 

@@ -1,10 +1,12 @@
-/// One implicit Euler step by one linear solve, eq. (2) with rotations at the step's start (design 4.4).
+/// One implicit step, by one linear solve, eq. (2), for every integrator, or iterated (design 4.4).
 ///
-/// With Rayleigh damping C = Ma + Kb (both per element) and forces f at the step's start, implicit Euler linearised
-/// there is (M + h C + h^2 K) v' = M v + h f, so the change d = v' - v solves S d = h f + M v - S v with S = M + h Ma +
-/// sum (h^2 + h b) K_e. Unlike the paper's eq. (2), which solves for displacements and carries the force correction f0
-/// beside K, the elastic force is evaluated by itself: it is the same force, but exact for a capped dilatation and
-/// without the cancellation of K x against f0.
+/// With Rayleigh damping C = Ma + Kb (both per element), the integrator's bases x', v' and seconds t, r of TimeStep,
+/// and forces f linearised at positions x* with their rotations, the velocities v at the end have
+///   (M + t C + t r K) v = M v' + t f + t K (x* - x').
+/// Solved is the change d = v - v' by S d = right side - S v', S = M + t Ma + sum t (r + b) K_e. The paper's implicit
+/// Euler at the step's start has t = r = h and x* = x' = x: eq. (2). Unlike there, where displacements are solved for
+/// and the force correction f0 stands beside K, the elastic force is evaluated by itself: it is the same force, but
+/// exact for a capped dilatation and without the cancellation of K x against f0.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -22,30 +24,29 @@ bool all_finite(std::span<const Vec3> vectors) {
 
 namespace {
 
-/// S, from elements, masses and pulls; on the way the stresses.
+/// S, from elements, masses and pulls.
 void assemble_step(Simulator::Parts& parts, StepWork& work) {
-  const double h = work.h;
+  const StepSeconds& seconds = work.step.seconds;
   std::vector<double> shares(parts.body.tets.size());
-  for (std::size_t e = 0; e < shares.size(); ++e) shares[e] = h * h + h * parts.model.materials[e].damping_stiffness;
-  find_stiffness_terms(parts.body, parts.state.positions, work.rotations, shares, Curvature::None, parts.terms,
-                       parts.stresses, parts.threads);
+  for (std::size_t e = 0; e < shares.size(); ++e)
+    shares[e] = seconds.velocity * (seconds.position + parts.damping_stiffness[e]);
+  find_stiffness_terms(parts.body, work.positions, work.rotations, shares, Curvature::None, parts.terms, {},
+                       parts.threads);
   parts.assembler.assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
-  for (const ActivePull& pull : work.pulls) add_pull_stiffness(pull, parts.state.positions, h * h, parts.matrix);
+  for (const ActivePull& pull : work.pulls)
+    add_pull_stiffness(pull, work.positions, seconds.velocity * seconds.position, parts.matrix);
 }
 
-/// h f + M v - S v on free nodes, where S v takes the held nodes at the velocity that carries them to their targets.
-void find_right_side(Simulator::Parts& parts, StepWork& work) {
-  const SimulationState& state = parts.state;
-  const std::size_t n = parts.nodes();
-  work.right_side.resize(n);
-  parts.gather_all_forces(state.positions, work.pulls, work.right_side);
-  std::vector<Vec3> product(n);
-  multiply(parts.matrix, work.velocities, product, parts.threads);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (work.pinned.held[i] != 0)
-      work.right_side[i].setZero();
-    else
-      work.right_side[i] = work.h * work.right_side[i] + parts.masses.mass[i] * state.velocities[i] - product[i];
+/// forces -= scale * (secant) stiffness of a pull * vectors.
+void subtract_pull_product(const ActivePull& pull, std::span<const Vec3> positions, double scale,
+                           std::span<const Vec3> vectors, std::span<Vec3> forces) {
+  const double factor = scale * pull_factor(pull, positions);
+  for (const Spring& spring : pull.springs) {
+    Vec3 vector = Vec3::Zero();
+    for (std::size_t k = 0; k < 4; ++k)
+      vector += spring.weights[k] * vectors[static_cast<std::size_t>(spring.nodes[k])];
+    for (std::size_t k = 0; k < 4; ++k)
+      forces[static_cast<std::size_t>(spring.nodes[k])] -= factor * spring.stiffness * spring.weights[k] * vector;
   }
 }
 
@@ -53,8 +54,9 @@ void find_right_side(Simulator::Parts& parts, StepWork& work) {
 SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
   {
     const ScopedStage stage(parts.times, "simulate/assemble");
+    work.right_side.resize(parts.nodes());
+    find_residual(parts, work, work.velocities, {}, work.right_side);
     assemble_step(parts, work);
-    find_right_side(parts, work);
   }
   work.change.assign(parts.nodes(), Vec3::Zero());
   if (!all_finite(work.right_side)) return {SolveStatus::Breakdown, 0, 0, false};
@@ -74,15 +76,16 @@ SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
   return report;
 }
 
-SolveReport solve_step(Simulator::Parts& parts, StepWork& work) {
-  const std::size_t n = parts.nodes();
-  work.velocities = parts.state.velocities;
-  work.node_terms.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    work.node_terms[i] = parts.masses.mass[i] + work.h * parts.masses.damping[i];
-    if (work.pinned.held[i] != 0) work.velocities[i] = (work.pinned.targets[i] - parts.state.positions[i]) / work.h;
+SolveReport solve_once(Simulator::Parts& parts, StepWork& work) {
+  {
+    const ScopedStage stage(parts.times, "simulate/rotate");
+    find_rotations(parts.body, parts.params.rotation, work.positions, work.rotations, parts.threads);
   }
-  if (suits_float(parts, work.h)) {
+  const double t = work.step.seconds.velocity;
+  work.node_terms.resize(parts.nodes());
+  for (std::size_t i = 0; i < work.node_terms.size(); ++i)
+    work.node_terms[i] = parts.masses.mass[i] + t * parts.masses.damping[i];
+  if (suits_float(parts, work.step.seconds)) {
     const SolveReport report = solve_step_in_float(parts, work);
     if (report.ok()) return report;
   }
@@ -90,22 +93,105 @@ SolveReport solve_step(Simulator::Parts& parts, StepWork& work) {
   return solve_step_in_double(parts, work);
 }
 
+/// Accelerations that forces and damping give a state without any; zero of held nodes.
+std::vector<Vec3> find_accelerations(Simulator::Parts& parts, const PinnedNodes& pinned,
+                                     const std::vector<ActivePull>& pulls) {
+  const SimulationState& state = parts.state;
+  StepWork work{{0, {1, 0}, state.positions, state.velocities},
+                pinned,
+                pulls,
+                state.positions,
+                state.rotations,
+                {},
+                state.velocities,
+                {},
+                {},
+                {}};
+  find_rotations(parts.body, parts.params.rotation, work.positions, work.rotations, parts.threads);
+  std::vector<Vec3> accelerations(parts.nodes());
+  find_residual(parts, work, work.velocities, {}, accelerations);
+  for (std::size_t i = 0; i < accelerations.size(); ++i) accelerations[i] /= parts.masses.mass[i];
+  return accelerations;
+}
+
+/// Bases of the integrator, such that held nodes get to their targets, and the place of linearisation.
+void begin_step(Simulator::Parts& parts, StepWork& work, double h) {
+  const SimulationState& state = parts.state;
+  work.step = begin_time_step(parts.params, state, h);
+  work.velocities = work.step.base_velocities;
+  const bool at_start = linearization(parts.params) == Linearize::Start;
+  work.positions = at_start ? state.positions : predict_positions(parts.params, state, h);
+  const bool euler_at_start = at_start && parts.params.integrator == Integrator::Euler;
+  for (std::size_t i = 0; i < parts.nodes(); ++i) {
+    if (work.pinned.held[i] == 0) continue;
+    const Vec3& target = work.pinned.targets[i];
+    work.velocities[i] = find_held_motion(parts.params, state, i, target, h).velocity;
+    if (euler_at_start) continue;  // its base is where the node is
+    work.step.base_positions[i] = target - work.step.seconds.position * work.velocities[i];
+    if (!at_start) work.positions[i] = target;
+  }
+  if (euler_at_start) return;
+  work.offsets.resize(parts.nodes());
+  for (std::size_t i = 0; i < work.offsets.size(); ++i)
+    work.offsets[i] = work.step.base_positions[i] - work.positions[i];
+}
+
 /// The state after the step; held nodes reach their targets exactly.
 SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
-  SimulationState next{parts.state.positions, parts.state.velocities, std::move(work.rotations)};
+  SimulationState next{work.step.base_positions, work.velocities, std::move(work.rotations)};
   for (std::size_t i = 0; i < parts.nodes(); ++i) {
     if (work.pinned.held[i] != 0) {
-      next.velocities[i] = (work.pinned.targets[i] - next.positions[i]) / work.h;
       next.positions[i] = work.pinned.targets[i];
     } else {
       next.velocities[i] += work.change[i];
-      next.positions[i] += work.h * next.velocities[i];
+      next.positions[i] += work.step.seconds.position * next.velocities[i];
     }
   }
+  remember(parts.params, work.step, parts.state, work.pinned.held, work.pinned.targets, next);
   return next;
 }
 
+/// Makes the step's end the state, unless it is not finite or its error is too great.
+void accept_or_reject(Simulator::Parts& parts, StepWork& work, double error_limit, StepReport& report) {
+  SimulationState next = advanced(parts, work);
+  if (!all_finite(next.positions) || !all_finite(next.velocities)) {
+    report.solve.status = SolveStatus::Breakdown;
+    return;
+  }
+  if (std::isfinite(error_limit)) {
+    report.error =
+        estimate_error(parts.params, parts.state, work.step.h, work.pinned.held, next.positions) / parts.body_size;
+    report.rejected = report.error > error_limit;
+    next.previous_error = report.error;
+  }
+  if (!report.rejected) parts.state = std::move(next);
+}
+
 }  // namespace
+
+void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities,
+                   std::span<const Vec3> change, std::span<Vec3> residual) {
+  const StepSeconds& seconds = work.step.seconds;
+  const double t = seconds.velocity;
+  find_step_terms(parts.body,
+                  {work.positions, end_velocities, work.rotations, seconds, parts.damping_stiffness, work.offsets},
+                  parts.step_terms, parts.threads);
+  gather_step_forces(parts.body.node_elements, parts.step_terms, residual, parts.threads);
+  const Vec3 gravity = t * parts.model.gravity;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    residual[i] += parts.masses.mass[i] * gravity - t * parts.masses.damping[i] * work.velocities[i];
+    if (!change.empty()) residual[i] -= work.node_terms[i] * change[i];
+  }
+  for (const ActivePull& pull : work.pulls) {
+    std::vector<Vec3> forces(residual.size(), Vec3::Zero());
+    add_pull_forces(pull, work.positions, forces);
+    for (std::size_t i = 0; i < residual.size(); ++i) residual[i] += t * forces[i];
+    subtract_pull_product(pull, work.positions, t * seconds.position, end_velocities, residual);
+    if (!work.offsets.empty()) subtract_pull_product(pull, work.positions, t, work.offsets, residual);
+  }
+  for (std::size_t i = 0; i < residual.size(); ++i)
+    if (work.pinned.held[i] != 0) residual[i].setZero();
+}
 
 void correct_translations(const Simulator::Parts& parts, StepWork& work) {
   const std::vector<std::uint8_t> held = parts.held_pieces(work.pinned, work.pulls);
@@ -122,29 +208,32 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work) {
   }
 }
 
-StepReport Simulator::Parts::step(double frame, double seconds) {
-  StepWork work{seconds, pins.at(frame), pulls_at(frame), state.rotations, {}, {}, {}, {}};
+StepReport Simulator::Parts::step(double frame, double seconds, double error_limit) {
+  StepWork work{{}, pins.at(frame), pulls_at(frame), {}, state.rotations, {}, {}, {}, {}, {}};
   StepReport report;
   if (!work.pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
     report.culprit = work.pinned.conflict;
     return report;
   }
-  {
-    const ScopedStage stage(times, "simulate/rotate");
-    find_rotations(body, params.rotation, state.positions, work.rotations, threads);
+  const bool ends_frame = frame == std::floor(frame);
+  if (is_at_rest(*this, work.pinned, work.pulls, seconds)) {
+    if (ends_frame) coarse_lag.usable = false;
+    report.nonlinear_iterations = 0;
+    report.at_rest = true;
+    return report;
   }
-  report.solve = solve_step(*this, work);
-  if (frame == std::floor(frame)) coarse_lag.usable = false;
-  if (report.ok()) {
-    SimulationState next = advanced(*this, work);
-    if (all_finite(next.positions) && all_finite(next.velocities)) {
-      state = std::move(next);
-      return report;
-    }
-    report.solve.status = SolveStatus::Breakdown;
-  }
-  report.culprit = find_culprit(state.positions, work.right_side);
+  const bool first = lacks_accelerations(params, state);
+  if (first) state.accelerations = find_accelerations(*this, work.pinned, work.pulls);
+  begin_step(*this, work, seconds);
+  if (linearization(params) == Linearize::Iterated)
+    report = iterate_step(*this, work);
+  else
+    report.solve = solve_once(*this, work);
+  if (ends_frame) coarse_lag.usable = false;
+  if (report.ok()) accept_or_reject(*this, work, error_limit, report);
+  if (first && (!report.ok() || report.rejected)) state.accelerations.clear();
+  if (!report.ok()) report.culprit = find_culprit(state.positions, work.right_side);
   return report;
 }
 

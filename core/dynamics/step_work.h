@@ -7,18 +7,27 @@
 #include "core/constraints/pins.h"
 #include "core/constraints/pulls.h"
 #include "core/dynamics/simulator_parts.h"
+#include "core/dynamics/time_step.h"
 
 namespace softreel {
 
+/// One step on its way. The system is linear in the velocities v at the end, which are `velocities` plus `change`.
 struct StepWork {
-  double h;
+  TimeStep step;
   PinnedNodes pinned;
   std::vector<ActivePull> pulls;
-  std::vector<Quaternion> rotations;
-  std::vector<Vec3> velocities;    ///< at the start; of held nodes, those that carry them to their targets
-  std::vector<double> node_terms;  ///< mass part of S
+  std::vector<Vec3> positions;        ///< where rotations, forces and stiffness are taken, m
+  std::vector<Quaternion> rotations;  ///< at these positions
+  std::vector<Vec3> offsets;          ///< the integrator's base positions less `positions`, m; empty if they are equal
+  std::vector<Vec3> velocities;       ///< the integrator's base; of held nodes, those at the end
+  std::vector<double> node_terms;     ///< mass part of S
   std::vector<Vec3> right_side, change;
 };
+
+/// t f + M (base velocities) - (M + t C) v - t K (seconds.position v + offsets) for v = velocities + change and t =
+/// seconds.velocity; zero on held nodes. change: empty if it is zero; end_velocities: v. On the way parts.step_terms.
+void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities,
+                   std::span<const Vec3> change, std::span<Vec3> residual);
 
 bool all_finite(std::span<const Vec3> vectors);
 
@@ -27,12 +36,20 @@ bool all_finite(std::span<const Vec3> vectors);
 /// and its free fall needs no iteration.
 void correct_translations(const Simulator::Parts& parts, StepWork& work);
 
-/// True if a step of h seconds may be solved in float: its tolerance is not too tight, and no node is so much stiffer
+/// True if such a step may be solved in float: its tolerance is not too tight, and no node is so much stiffer
 /// than it is heavy that rounding its row to float would act like a force.
-bool suits_float(Simulator::Parts& parts, double h);
+bool suits_float(Simulator::Parts& parts, const StepSeconds& seconds);
 
 /// Solves for work.change with the matrix in float and residuals in double; fills work.right_side. Not ok where float
 /// does not do: then work.change means nothing, and the step is to be solved in double.
 SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work);
+
+/// Finds work.change, and the rotations at the step's end, by Newton to force balance; work.right_side becomes the
+/// unbalanced forces.
+StepReport iterate_step(Simulator::Parts& parts, StepWork& work);
+
+/// True if a step of `seconds` would change nothing worth a step: see SolverParams::rest_tolerance.
+bool is_at_rest(Simulator::Parts& parts, const PinnedNodes& pinned, const std::vector<ActivePull>& pulls,
+                double seconds);
 
 }  // namespace softreel

@@ -15,25 +15,34 @@
 
 namespace softreel {
 
-/// Terms of the system S d = h f - C h v - h^2 K v of core/dynamics/step.cpp.
+/// Terms of the system of core/dynamics/step.cpp.
 struct StepTerms {
   /// g_i = sqrt(s V mu) Q b_i as x y z r with r = slope of the dilatation stress over mu: elements x 4 x 4.
   /// Block (i, j) of S gains r g_i g_j^T + g_j g_i^T + (g_i . g_j) I.
   AlignedVector<float> gradients;
-  /// h V Q sigma and s times the derivative of V Q sigma along the velocities, as forces -T b_i on the nodes, N s:
-  /// elements x 4 x 3, and one scalar more for the lanes of the last.
+  /// t V Q sigma, t times the derivative of V Q sigma along the offsets and s times that along the velocities, as
+  /// forces -T b_i on the nodes, N s: elements x 4 x 3, and one scalar more for the lanes of the last.
   AlignedVector<double> forces;
   /// True if r is the same in all elements.
   bool uniform_ratio = false;
 };
 
-/// The state that a step starts from.
+/// How far one step reaches: with the acceleration a and the velocity v at its end, v = base + velocity_seconds * a and
+/// the positions are base + position_seconds * v, the bases being those of the integrator (core/dynamics/time_step.h).
+struct StepSeconds {
+  double velocity = 0, position = 0;
+  bool operator==(const StepSeconds&) const = default;
+};
+
+/// The state that the elements are linearised at, and where the step goes from there.
 struct StepSource {
   std::span<const Vec3> positions;            ///< per node, m
-  std::span<const Vec3> velocities;           ///< per node, m/s
+  std::span<const Vec3> velocities;           ///< at the step's end, per node, m/s
   std::span<const Quaternion> rotations;      ///< per element
-  double seconds = 0;                         ///< h
-  std::span<const double> damping_stiffness;  ///< b per element, s; the element's share in S is s = h^2 + h b
+  StepSeconds seconds;                        ///< t = seconds.velocity
+  std::span<const double> damping_stiffness;  ///< b per element, s; its share in S is s = t (seconds.position + b)
+  /// The positions at the step's end less those above and seconds.position * velocities, m; empty: zero.
+  std::span<const Vec3> offsets;
 };
 
 /// Fills `terms`; the vector twin of find_stiffness_terms, find_stresses and the product with K.

@@ -41,26 +41,30 @@ struct Pressure {
   return pressure;
 }
 
-/// h sigma + s (2 mu sym(D) + slope tr(D) I) with D = Q^T grad v, in the frame of the rest shape.
+/// t sigma + t C : O + s C : D with D = Q^T grad v, O that of the offsets and C : D = 2 mu sym(D) + slope tr(D) I, in
+/// the frame of the rest shape.
 struct Stress {
   Symmetric value;
   Lanes slope;
 };
 
-[[gnu::always_inline]] inline Stress find_stress(const ElementBatch& batch, const Matrix& rotation, const Matrix& F,
-                                                 const Matrix& velocity_gradient, const Lanes& seconds,
+/// Q^T G, symmetric part.
+[[gnu::always_inline]] inline Symmetric find_strain(const Matrix& rotation, const Matrix& gradient) {
+  return detail::symmetric_part(detail::transposed_product(rotation, gradient));
+}
+
+[[gnu::always_inline]] inline Lanes trace(const Symmetric& s) {
+  return s[0] + s[3] + s[5];
+}
+
+/// strain, pressure: of the positions with the offsets; D: of the velocities.
+[[gnu::always_inline]] inline Stress find_stress(const ElementBatch& batch, const Symmetric& strain,
+                                                 const Pressure& pressure, const Symmetric& D, const Lanes& seconds,
                                                  const Lanes& share) {
-  const Symmetric U = detail::symmetric_part(detail::transposed_product(rotation, F));
-  const Symmetric D = detail::symmetric_part(detail::transposed_product(rotation, velocity_gradient));
-  const Lanes one(1), two_mu = load(batch.mu) + load(batch.mu);
-  const Lanes xx = U[0] - one, yy = U[3] - one, zz = U[5] - one;
-  const Pressure pressure = find_pressure(batch, xx + yy + zz);
-  const Lanes mean = seconds * pressure.value + share * (pressure.slope * (D[0] + D[3] + D[5]));
-  const auto deviator = [&](const Lanes& strain, const Lanes& rate) {
-    return two_mu * (seconds * strain + share * rate);
-  };
-  return {{mean + deviator(xx, D[0]), deviator(U[1], D[1]), deviator(U[2], D[2]), mean + deviator(yy, D[3]),
-           deviator(U[4], D[4]), mean + deviator(zz, D[5])},
+  const Lanes two_mu = load(batch.mu) + load(batch.mu);
+  const Lanes mean = seconds * pressure.value + share * (pressure.slope * trace(D));
+  const auto deviator = [&](std::size_t k) { return two_mu * (seconds * strain[k] + share * D[k]); };
+  return {{mean + deviator(0), deviator(1), deviator(2), mean + deviator(3), deviator(4), mean + deviator(5)},
           pressure.slope};
 }
 
@@ -107,21 +111,32 @@ struct Stress {
   }
 }
 
-}  // namespace
-
-std::int64_t find_step_batches(std::span<const ElementBatch> batches, const StepSource& source, float expected_ratio,
-                               StepTerms& terms, std::size_t begin, std::size_t end) {
+/// kOffsets: there are offsets.
+template <bool kOffsets>
+std::int64_t find_batches(std::span<const ElementBatch> batches, const StepSource& source, float expected_ratio,
+                          StepTerms& terms, std::size_t begin, std::size_t end) {
   std::int64_t different = 0;
-  const Lanes h(source.seconds);
+  const Lanes seconds(source.seconds.velocity), reach(source.seconds.position), one(1);
   for (std::size_t b = begin; b < end; ++b) {
     const ElementBatch& batch = batches[b];
     const std::size_t first = kElementLanes * b, last = source.rotations.size() - 1;
     const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
     const Lanes share =
-        h * (h + Lanes([&](auto lane) { return source.damping_stiffness[std::min(first + lane, last)]; }));
-    const Matrix F = detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned);
-    const Matrix G = detail::gradient<Lanes>(batch, source.velocities, stdx::vector_aligned);
-    const Stress stress = find_stress(batch, Q, F, G, h, share);
+        seconds * (reach + Lanes([&](auto lane) { return source.damping_stiffness[std::min(first + lane, last)]; }));
+    const auto strain_along = [&](std::span<const Vec3> vectors) {
+      return find_strain(Q, detail::gradient<Lanes>(batch, vectors, stdx::vector_aligned));
+    };
+    Symmetric strain = strain_along(source.positions);
+    strain[0] -= one;
+    strain[3] -= one;
+    strain[5] -= one;
+    Pressure pressure = find_pressure(batch, trace(strain));
+    if constexpr (kOffsets) {
+      const Symmetric O = strain_along(source.offsets);
+      for (std::size_t k = 0; k < 6; ++k) strain[k] += O[k];
+      pressure.value += pressure.slope * trace(O);
+    }
+    const Stress stress = find_stress(batch, strain, pressure, strain_along(source.velocities), seconds, share);
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;
     Matrix T = detail::product(Q, stress.value), scaled = Q;
     const Lanes scale = stdx::sqrt(share * volume * mu);
@@ -137,6 +152,14 @@ std::int64_t find_step_batches(std::span<const ElementBatch> batches, const Step
       if (static_cast<float>(ratio[lane]) != expected_ratio) ++different;
   }
   return different;
+}
+
+}  // namespace
+
+std::int64_t find_step_batches(std::span<const ElementBatch> batches, const StepSource& source, float expected_ratio,
+                               StepTerms& terms, std::size_t begin, std::size_t end) {
+  return source.offsets.empty() ? find_batches<false>(batches, source, expected_ratio, terms, begin, end)
+                                : find_batches<true>(batches, source, expected_ratio, terms, begin, end);
 }
 
 }  // namespace softreel

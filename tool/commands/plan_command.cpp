@@ -96,10 +96,12 @@ int run_plan(const ShotOptions& options) {
                 expected_tets(shot.bodies[b], used_bounds(run.loaded(b).surface).size()),
                 cached ? " (in the cache already)" : "");
   }
-  std::printf("  simulate %d of %zu body frames (%s), the others are stored or not needed\n", plan.simulated,
-              run.body_count() * static_cast<std::size_t>(frames.last - first_simulated_frame(shot) + 1),
-              shot.settings.mode == SimulationMode::Static ? "static"
-                                                           : fmt::format("{} sub-steps", shot.solver.substeps).c_str());
+  std::printf(
+      "  simulate %d of %zu body frames (%s), the others are stored or not needed\n", plan.simulated,
+      run.body_count() * static_cast<std::size_t>(frames.last - first_simulated_frame(shot) + 1),
+      shot.settings.mode == SimulationMode::Static
+          ? "static"
+          : fmt::format("{} sub-steps{}", shot.solver.substeps, shot.solver.step_error > 0 ? " or more" : "").c_str());
   std::printf("  trace %d of %d frames of %d x %d at %d samples to %s\n", plan.traced, frames.count(),
               shot.render.params.width, shot.render.params.height, shot.render.params.samples,
               shot.output.directory.c_str());

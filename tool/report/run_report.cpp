@@ -63,8 +63,14 @@ std::map<std::string, StageTimes::Entry> with_parents(const std::map<std::string
 std::string simulation_line(const RunReport& report) {
   const SimulationCounts& counts = report.simulation;
   if (counts.computed == 0) return {};
-  return fmt::format("  simulation: {} body frames computed; {:.1f} solver iterations a frame\n", counts.computed,
-                     static_cast<double>(counts.linear_iterations) / counts.computed);
+  const SimulationWork& work = counts.work;
+  std::string line = fmt::format("  simulation: {} body frames computed; {:.1f} solver iterations a frame",
+                                 counts.computed, static_cast<double>(work.linear_iterations) / counts.computed);
+  if (work.steps_at_rest > 0) line += fmt::format("; {} of {} steps left out at rest", work.steps_at_rest, work.steps);
+  if (work.steps_rejected > 0)
+    line += fmt::format("; {} steps, {} more taken in vain to keep the error", work.steps, work.steps_rejected);
+  if (work.frames_unchanged > 0) line += fmt::format("; {} frames unchanged and not solved", work.frames_unchanged);
+  return line + "\n";
 }
 
 std::string picture_line(const PictureCounts& counts) {
@@ -152,8 +158,12 @@ std::string to_json(const RunReport& report) {
   json["simulation"] = {{"computed", simulation.computed},
                         {"loaded", simulation.loaded},
                         {"not_needed", simulation.not_needed},
-                        {"linear_iterations", simulation.linear_iterations},
-                        {"nonlinear_iterations", simulation.nonlinear_iterations},
+                        {"linear_iterations", simulation.work.linear_iterations},
+                        {"nonlinear_iterations", simulation.work.nonlinear_iterations},
+                        {"steps", simulation.work.steps},
+                        {"steps_at_rest", simulation.work.steps_at_rest},
+                        {"steps_rejected", simulation.work.steps_rejected},
+                        {"frames_unchanged", simulation.work.frames_unchanged},
                         {"saved_seconds", simulation.saved_seconds}};
   const PictureCounts& pictures = report.pictures;
   json["pictures"] = {{"traced", pictures.traced},       {"linked", pictures.linked},

@@ -1,5 +1,4 @@
-// The table of the whole document and of how the shot runs: shot, gravity, solver, golden; what must hold between
-// tables.
+// The table of the whole document and of how the shot runs: shot, gravity, golden; what must hold between tables.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -74,50 +73,6 @@ const Table<Shot>& gravity_table() {
     Table<Shot> t;
     t.sentence = "Weight.";
     t.add("acceleration", &Shot::gravity, vector_of<Vec3>(kAnyNumber), "m/s^2", "Of everything that falls.");
-    return t;
-  }();
-  return table;
-}
-
-const Table<Shot>& solver_table() {
-  static const Table<Shot> table = [] {
-    Table<Shot> t;
-    const auto of_solver = [](auto member) {
-      return [member](auto& s) -> auto& {
-        return s.solver.*member;
-      };
-    };
-    using P = SolverParams;
-    constexpr Range kTolerance{0, 1, true};
-    t.sentence = "How the motion is computed.";
-    t.add("rotation", of_solver(&P::rotation),
-          choice<RotationMethod>({{"consistent", RotationMethod::Consistent},
-                                  {"energy", RotationMethod::Energy},
-                                  {"paper", RotationMethod::Paper},
-                                  {"polar_smooth", RotationMethod::PolarSmooth},
-                                  {"qr", RotationMethod::Qr},
-                                  {"none", RotationMethod::None}}),
-          "",
-          "Of each tetrahedron: polar, by the paper's energy safely or by its bare Newton, polar averaged over "
-          "neighbours, Gram-Schmidt (depends on the order of nodes), or none (small strain only).")
-        .add("dilatation", of_solver(&P::dilatation),
-             choice<Dilatation>({{"capped", Dilatation::Capped}, {"linear", Dilatation::Linear}}), "",
-             "\"capped\" keeps strong stretch stable; \"linear\" is the bare linear material.")
-        .add("substeps", of_solver(&P::substeps), whole<int>(1, 10000), "per frame", "Steps of time in a frame.")
-        .add("tolerance", of_solver(&P::tolerance), number(kTolerance), "",
-             "dynamic: residual of a step's linear solve over its right-hand side.")
-        .add("force_tolerance", of_solver(&P::force_tolerance), number(kTolerance), "",
-             "static: residual force over the body's scale of force.")
-        .add("max_iterations", of_solver(&P::max_iterations), whole<int>(1, 1000000), "", "Of one linear solve.")
-        .add("max_newton_iterations", of_solver(&P::max_newton_iterations), whole<int>(1, 1000000), "",
-             "static: per frame.")
-        .add(
-            "galerkin", [](auto& s) -> auto& { return s.solver.multigrid.galerkin; },
-            choice<GalerkinMethod>({{"gather", GalerkinMethod::Gather},
-                                    {"stream", GalerkinMethod::Stream},
-                                    {"naive", GalerkinMethod::Naive}}),
-            "", "How coarse matrices are formed; all give the same up to round-off.")
-        .add("threads", &Shot::threads, whole<int>(0, 4096), "", "0: all processors. Results do not depend on it.");
     return t;
   }();
   return table;

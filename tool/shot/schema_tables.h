@@ -12,6 +12,8 @@ const Table<Shot>& shot_table();
 const Table<BodySettings>& body_table();
 const Table<MaterialSettings>& material_table();
 
+const Table<Shot>& solver_table();
+
 const Table<CameraSettings>& camera_table();
 const Table<LightSettings>& light_table();
 const Table<Shot>& environment_table();

@@ -74,8 +74,7 @@ SimulationCounts ShotRun::counts(int last) const {
     sum.computed += counts.computed;
     sum.loaded += counts.loaded;
     sum.not_needed += counts.not_needed;
-    sum.linear_iterations += counts.linear_iterations;
-    sum.nonlinear_iterations += counts.nonlinear_iterations;
+    sum.work += counts.work;
     sum.saved_seconds += counts.saved_seconds;
   }
   return sum;

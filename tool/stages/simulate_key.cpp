@@ -1,5 +1,7 @@
 #include "tool/stages/simulate_key.h"
 
+#include "core/dynamics/frame_steps.h"
+
 namespace softreel {
 namespace {
 
@@ -26,6 +28,15 @@ void add_constraints(KeyHasher& key, const BodyConstraints& constraints, double 
   }
 }
 
+/// What the steps of a dynamic shot depend on; "auto" is the key of what it stands for.
+void add_steps(KeyHasher& key, const SolverParams& solver) {
+  key.add(solver.substeps).add(solver.tolerance).add(solver.integrator).add(linearization(solver));
+  if (solver.integrator == Integrator::Newmark) key.add(solver.newmark.beta).add(solver.newmark.gamma);
+  key.add(solver.step_error);
+  if (solver.step_error > 0) key.add(frame_grid(solver).ticks_per_frame());
+  key.add(solver.rest_tolerance);
+}
+
 }  // namespace
 
 StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
@@ -35,12 +46,15 @@ StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraint
   const SolverParams& solver = shot.solver;
   key.add(solver.rotation).add(solver.dilatation).add(solver.max_iterations);
   if (shot.settings.mode == SimulationMode::Dynamic) {
-    key.add(shot.settings.fps).add(solver.substeps).add(solver.tolerance).add(shot.settings.start);
+    key.add(shot.settings.fps).add(shot.settings.start);
+    add_steps(key, solver);
   } else {
     key.add(shot.settings.independent);
   }
-  if (shot.settings.mode == SimulationMode::Static || shot.settings.start == StartState::Equilibrium)
-    key.add(solver.force_tolerance).add(solver.max_newton_iterations);
+  const bool balances = shot.settings.mode == SimulationMode::Static ||
+                        shot.settings.start == StartState::Equilibrium || linearization(solver) == Linearize::Iterated;
+  if (balances) key.add(solver.max_newton_iterations);
+  if (balances || solver.rest_tolerance > 0) key.add(solver.force_tolerance);
   key.add(solver.multigrid.galerkin);
   for (const Pin& pin : constraints.pins) key.add(pin.points);
   for (const Pull& pull : constraints.pulls) key.add(pull.points).add(pull.weights).add(pull.max_force);
@@ -57,8 +71,15 @@ StageKey frame_key(const Shot& shot, const BodyConstraints& constraints, const S
     add_constraints(key, constraints, frame);
     return key.key();
   }
-  for (int s = 1; s <= shot.solver.substeps; ++s)
-    add_constraints(key, constraints, frame - 1 + static_cast<double>(s) / shot.solver.substeps);
+  const int ticks = frame_grid(shot.solver).ticks_per_frame();
+  for (int tick = 1; tick <= ticks; ++tick)
+    add_constraints(key, constraints, frame - 1 + static_cast<double>(tick) / ticks);
+  return key.key();
+}
+
+StageKey constraints_key(const BodyConstraints& constraints, double frame) {
+  KeyHasher key("constraints");
+  add_constraints(key, constraints, frame);
   return key.key();
 }
 

@@ -14,11 +14,14 @@ namespace softreel {
 StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
                              const StageKey& materials);
 
-/// The previous frame's key with the *values* of the constraints at the sub-steps of this frame: an edit that changes
-/// no value changes no key. `is_start`: the frame is where the simulation starts, from the state that shot.start asks
-/// for.
+/// The previous frame's key with the *values* of the constraints at the sub-steps of this frame (under error control:
+/// at every time where one may end): an edit that changes no value changes no key. `is_start`: the frame is where the
+/// simulation starts, from the state that shot.start asks for.
 StageKey frame_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& previous, int frame,
                    bool is_start);
+
+/// Of all that pins and pulls say at a frame: equal keys ask for the same.
+StageKey constraints_key(const BodyConstraints& constraints, double frame);
 
 /// Where the simulation starts: the first frame less the preroll.
 int first_simulated_frame(const Shot& shot);

@@ -15,6 +15,11 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.positions);
   out.put_array(frame.state.velocities);
   out.put_array(frame.state.rotations);
+  out.put_array(frame.state.previous_positions);
+  out.put_array(frame.state.previous_velocities);
+  out.put_array(frame.state.accelerations);
+  out.put(frame.state.previous_error);
+  out.put(frame.state.previous_seconds);
   out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
   for (const auto& step : frame.earlier_steps) out.put_array(step);
   return out.take();
@@ -26,14 +31,14 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
   frame.state.positions = in.get_array<Vec3>();
   frame.state.velocities = in.get_array<Vec3>();
   frame.state.rotations = in.get_array<Quaternion>();
+  frame.state.previous_positions = in.get_array<Vec3>();
+  frame.state.previous_velocities = in.get_array<Vec3>();
+  frame.state.accelerations = in.get_array<Vec3>();
+  frame.state.previous_error = in.get<double>();
+  frame.state.previous_seconds = in.get<double>();
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
   return frame;
-}
-
-void count(BodyFrame& frame, const StepReport& report) {
-  frame.linear_iterations += report.solve.iterations;
-  frame.nonlinear_iterations += report.nonlinear_iterations;
 }
 
 StageKey materials_key(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded) {
@@ -43,6 +48,16 @@ StageKey materials_key(const Shot& shot, const BodySettings& settings, const Loa
 }
 
 }  // namespace
+
+SimulationWork& SimulationWork::operator+=(const SimulationWork& other) {
+  linear_iterations += other.linear_iterations;
+  nonlinear_iterations += other.nonlinear_iterations;
+  steps += other.steps;
+  steps_at_rest += other.steps_at_rest;
+  steps_rejected += other.steps_rejected;
+  frames_unchanged += other.frames_unchanged;
+  return *this;
+}
 
 BodySimulation::BodySimulation(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded,
                                BodyConstraints constraints, const RunContext& context)
@@ -141,8 +156,7 @@ void BodySimulation::produce(int frame) {
     counts_.saved_seconds += produced.seconds;
   } else {
     counts_.computed += 1;
-    counts_.linear_iterations += made.linear_iterations;
-    counts_.nonlinear_iterations += made.nonlinear_iterations;
+    counts_.work += made.work;
   }
   frame_ = std::move(made);
   frame_number_ = frame;
@@ -158,40 +172,58 @@ const BodyFrame& BodySimulation::at(int frame) {
   return frame_;
 }
 
+void BodySimulation::require_small_error(const FrameReport& report, int frame) const {
+  if (!report.too_short) return;
+  throw work_error(fmt::format(
+      "{}: frame {}, body \"{}\": the error of a step is {:.3g} of the body's size with the shortest step that "
+      "solver.max_substeps = {} allows.\n  Accepted: at most solver.step_error = {:.3g}. Raise one of the two, or let "
+      "what jumps (a pin that is switched on, constant keys) move over a few frames; the frames before are kept.",
+      shot_.path, frame, settings_.name, report.last.error, shot_.solver.max_substeps, shot_.solver.step_error));
+}
+
+/// Steps of time from the frame before.
+SimulationWork BodySimulation::advance(int frame, std::vector<std::vector<Vec3>>& earlier_steps) {
+  Simulator& body = simulator();
+  simulator_holds_frame_ = false;  // until all of the frame is done
+  const auto keep = [&](int part) {
+    if (part < shot_.solver.substeps) earlier_steps.push_back(body.state().positions);
+  };
+  const FrameReport report = advance_to_frame(
+      body, frame, shot_.settings.fps, [&] { context_.stop_if_cancelled(); }, keep);
+  require_solved(report.last, frame);
+  require_small_error(report, frame);
+  return {report.linear_iterations, report.nonlinear_iterations, report.steps,
+          report.steps_at_rest,     report.steps_rejected,       0};
+}
+
+SimulationWork BodySimulation::find_equilibrium(int frame) {
+  Simulator& body = simulator();
+  simulator_holds_frame_ = false;
+  const StepReport report = body.find_equilibrium(frame);
+  require_solved(report, frame);
+  return {report.solve.iterations, report.nonlinear_iterations, 0, 0, 0, 0};
+}
+
 BodyFrame BodySimulation::simulated(int frame) {
   context_.stop_if_cancelled();
   filled();
   const ShotSettings& settings = shot_.settings;
   const bool is_static = settings.mode == SimulationMode::Static;
+  BodyFrame result;
   if (starts_from_rest(frame)) {
     frame_.state = rest_state();
     simulator_holds_frame_ = false;
+  } else if (is_static && constraints_key(constraints_, frame) == constraints_key(constraints_, frame - 1)) {
+    result.state = frame_.state;
+    result.work.frames_unchanged = 1;
+    return result;
   }
-  BodyFrame result;
   const bool is_start = frame == first_simulated_frame(shot_);
   if (is_start && !is_static && settings.start == StartState::Rest) {
     result.state = frame_.state;
     return result;
   }
-  if (is_static || is_start) {
-    Simulator& body = simulator();
-    simulator_holds_frame_ = false;  // until all of the frame is done
-    const StepReport report = body.find_equilibrium(frame);
-    require_solved(report, frame);
-    count(result, report);
-  } else {
-    Simulator& body = simulator();
-    simulator_holds_frame_ = false;
-    const int substeps = shot_.solver.substeps;
-    const double seconds = 1.0 / (settings.fps * substeps);
-    for (int s = 1; s <= substeps; ++s) {
-      context_.stop_if_cancelled();
-      const StepReport report = body.step(frame - 1 + static_cast<double>(s) / substeps, seconds);
-      require_solved(report, frame);
-      count(result, report);
-      if (s < substeps) result.earlier_steps.push_back(body.state().positions);
-    }
-  }
+  result.work = is_static || is_start ? find_equilibrium(frame) : advance(frame, result.earlier_steps);
   result.state = simulator_->state();
   simulator_holds_frame_ = true;
   return result;

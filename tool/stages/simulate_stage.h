@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/dynamics/frame_steps.h"
 #include "core/dynamics/simulator.h"
 #include "tool/shot/shot.h"
 #include "tool/stages/body_stage.h"
@@ -12,17 +13,27 @@
 
 namespace softreel {
 
+/// What frames took, and what they need not take.
+struct SimulationWork {
+  std::int64_t linear_iterations = 0, nonlinear_iterations = 0;
+  std::int64_t steps = 0;             ///< of time, at rest or not
+  std::int64_t steps_at_rest = 0;     ///< of these, left out
+  std::int64_t steps_rejected = 0;    ///< solved in vain, as their error was too great
+  std::int64_t frames_unchanged = 0;  ///< static, left out: the constraints are those of the frame before
+  SimulationWork& operator+=(const SimulationWork& other);
+};
+
 /// One body at one frame.
 struct BodyFrame {
   SimulationState state;                         ///< at the frame
   std::vector<std::vector<Vec3>> earlier_steps;  ///< node positions after each sub-step of the frame but the last
-  int linear_iterations = 0, nonlinear_iterations = 0;  ///< summed over the sub-steps; 0 if from the cache
+  SimulationWork work;                           ///< of this run: nothing if from the cache
 };
 
 /// What a run did and what it need not do, of one body or of several.
 struct SimulationCounts {
   int computed = 0, loaded = 0, not_needed = 0;
-  std::int64_t linear_iterations = 0, nonlinear_iterations = 0;
+  SimulationWork work;
   double saved_seconds = 0;  ///< what the frames that were not computed took when they were
 };
 
@@ -57,7 +68,10 @@ class BodySimulation {
   void produce(int frame);
   BodyFrame simulated(int frame);
   bool starts_from_rest(int frame) const;
+  SimulationWork advance(int frame, std::vector<std::vector<Vec3>>& earlier_steps);
+  SimulationWork find_equilibrium(int frame);
   void require_solved(const StepReport& report, int frame) const;
+  void require_small_error(const FrameReport& report, int frame) const;
 
   const Shot& shot_;
   const BodySettings& settings_;

@@ -40,7 +40,8 @@ struct Moving {
 
   StepTerms terms(int thread_count) const {
     StepTerms result;
-    find_step_terms(body, {positions, velocities, rotations, kSeconds, damping}, result, Threads(thread_count));
+    find_step_terms(body, {positions, velocities, rotations, {kSeconds, kSeconds}, damping, {}}, result,
+                    Threads(thread_count));
     return result;
   }
 
@@ -94,6 +95,28 @@ TEST(StepTerms, GiveTheForcesOfTheScalarFunctions) {
       for (const Vec3& f : expected) scale = std::max(scale, f.norm());
       for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_LT((forces[i] - expected[i]).norm(), 1e-12 * scale);
     }
+}
+
+TEST(StepTerms, GoOnFromTheirPositionsByTheOffsets) {
+  // Offsets that are a velocity times seconds.position pass for it where nothing is damped.
+  Moving moving(false, 0.05);
+  std::fill(moving.damping.begin(), moving.damping.end(), 0.0);
+  const std::size_t n = moving.mesh.nodes.size();
+  const StepSeconds seconds{kSeconds, 3 * kSeconds};
+  std::vector<Vec3> offsets(n), still(n, Vec3::Zero()), expected(n), forces(n);
+  for (std::size_t i = 0; i < n; ++i) offsets[i] = seconds.position * moving.velocities[i];
+  const auto find = [&](const std::vector<Vec3>& velocities, std::span<const Vec3> with_offsets, std::vector<Vec3>& f) {
+    StepTerms terms;
+    find_step_terms(moving.body,
+                    {moving.positions, velocities, moving.rotations, seconds, moving.damping, with_offsets}, terms,
+                    moving.threads);
+    gather_step_forces(moving.body.node_elements, terms, f, moving.threads);
+  };
+  find(moving.velocities, {}, expected);
+  find(still, offsets, forces);
+  double scale = 0;
+  for (const Vec3& f : expected) scale = std::max(scale, f.norm());
+  for (std::size_t i = 0; i < n; ++i) EXPECT_LT((forces[i] - expected[i]).norm(), 1e-12 * scale);
 }
 
 TEST(StepTerms, SumToNoForce) {

@@ -76,6 +76,70 @@ TEST_F(Skipping, EachRotationOfTheElementsIsSimulatedAndKeptApart) {
     }
 }
 
+/// Simulated frames in a cache folder.
+std::vector<std::string> stored_states(const std::string& cache) {
+  std::vector<std::string> names = files_under(cache);
+  std::erase_if(names, [](const std::string& name) { return name.find("/simulation/") == std::string::npos; });
+  return names;
+}
+
+TEST_F(Skipping, AStoredFrameIsContinuedWithTheSameBitsByEveryIntegrator) {
+  start("integrators");
+  int number = 0;
+  for (const char* name : {"euler", "bdf2", "newmark", "newmark --set solver.step_error=1e-4"}) {
+    const std::string parts = fmt::format("{}/parts{}", folder_, number),
+                      whole = fmt::format("{}/whole{}", folder_, number++);
+    const std::string set = fmt::format("--set solver.integrator={} --set solver.substeps=2 --cache ", name);
+    EXPECT_EQ(run_shot(set + parts + " --frames 1-2", "simulate").computed, 2) << name;
+    const Work rest = run_shot(set + parts, "simulate");
+    EXPECT_EQ(rest.computed, 2) << name;
+    EXPECT_EQ(rest.loaded, 2) << name;
+    EXPECT_EQ(run_shot(set + whole, "simulate").computed, 4) << name;
+    const std::vector<std::string> states = stored_states(whole);
+    EXPECT_EQ(states.size(), 4u);
+    EXPECT_EQ(stored_states(parts), states);
+    for (const std::string& state : states)
+      EXPECT_TRUE(stored_content(parts + "/" + state) == stored_content(whole + "/" + state)) << name << " " << state;
+  }
+}
+
+/// The simulation's part of the JSON report.
+json simulation_of(const std::string& folder, const std::string& options) {
+  const Outcome outcome =
+      run(fmt::format("softreel simulate {}/shot.toml --output {}/out --quiet --json {}", folder, folder, options));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return json::parse(outcome.out)["simulation"];
+}
+
+TEST_F(Skipping, ReportsWhatWasNotSolved) {
+  start("rest");
+  // The pull is switched off and the body is in balance: nothing happens in frames 2 to 4.
+  const std::string still = "--set 'body.ball.pull[0].active=[9,10]' ";
+  const json rest = simulation_of(folder_, still + "--set shot.start=equilibrium --set solver.substeps=2");
+  EXPECT_EQ(rest["computed"], 4);
+  EXPECT_EQ(rest["steps"], 6);
+  EXPECT_EQ(rest["steps_at_rest"], 6);
+  const json unchanged = simulation_of(folder_, still + "--set shot.mode=static");
+  EXPECT_EQ(unchanged["computed"], 4);
+  EXPECT_EQ(unchanged["frames_unchanged"], 3);
+  const json moving = simulation_of(folder_, "--set shot.mode=static");
+  EXPECT_EQ(moving["frames_unchanged"], 0);
+  const json controlled = simulation_of(folder_, "--set solver.step_error=1e-5");
+  EXPECT_GT(controlled["steps"], 6);
+  EXPECT_EQ(controlled["steps_at_rest"], 0);
+}
+
+TEST_F(Skipping, StopsWhereTheErrorOfAStepStaysTooGreat) {
+  start("error");
+  const Outcome outcome =
+      run(fmt::format("softreel simulate {}/shot.toml --output {}/out --quiet --set "
+                      "solver.step_error=1e-9 --set solver.max_substeps=4",
+                      folder_, folder_));
+  EXPECT_EQ(outcome.status, 1);
+  for (const char* part : {"frame 2, body \"ball\"", "solver.max_substeps = 4", "Accepted: at most", "Raise one of"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+}
+
 TEST_F(Skipping, ALightOrTheCameraTracesAndDoesNotSimulate) {
   start("light");
   run_shot();

@@ -130,6 +130,21 @@ TEST_F(ShotMessage, RefusesWhatHasNoMeaning) {
   expect_parts(message(body("[shot]\nname = \"a/b\"\n")), {"shot.name = \"a/b\"", "files are named after it"});
 }
 
+TEST_F(ShotMessage, SaysWhichValuesOfTheSolverDoNotGoTogether) {
+  const std::vector<Wrong> cases{
+      {"[solver]\nnewmark_gamma = 0.6\n",
+       {"s.toml:4:17: solver.newmark_gamma = 0.6", "twice newmark_beta = 0.25 is below newmark_gamma = 0.6",
+        "Accepted: 2 newmark_beta at least newmark_gamma", "Say newmark_beta = 0.3"}},
+      {"[solver]\nnewmark_gamma = 0.9\nnewmark_beta = 0.3\n", {"s.toml:5:16: solver.newmark_beta = 0.3"}},
+      {"[solver]\nsubsteps = 9\nstep_error = 1e-3\nmax_substeps = 8\n",
+       {"s.toml:6:16: solver.max_substeps = 8", "at least 9 and at most 8 steps", "Raise max_substeps"}},
+      {"[solver]\nsubsteps = 2000\nstep_error = 1e-3\n",
+       {"s.toml:4:12: solver.substeps = 2000", "Accepted: max_substeps not below substeps"}},
+  };
+  for (const Wrong& wrong : cases) expect_parts(message(body(wrong.lines)), wrong.parts);
+  EXPECT_EQ(message(body("[solver]\nsubsteps = 2000\nmax_substeps = 1\n")), "") << "there is no error control";
+}
+
 TEST_F(ShotMessage, PlacesMistakesOfTomlItself) {
   expect_parts(message("[body.a]\nmesh = \"a.ply\"\ntets = = 3\n"), {"s.toml:3:8: this is no TOML: "});
   expect_parts(message("[body.a]\nmesh = \"a.ply\"\nmesh = \"b.ply\"\n"), {"s.toml:3:", "mesh"});

@@ -170,6 +170,13 @@ poisson_ratio = 0.49
 [solver]
 rotation = "energy"
 dilatation = "linear"
+integrator = "newmark"
+newmark_beta = 0.36
+newmark_gamma = 0.7
+linearize = "iterated"
+step_error = 1e-4
+max_substeps = 64
+rest_tolerance = 1e-6
 substeps = 3
 tolerance = 1e-5
 force_tolerance = 1e-7

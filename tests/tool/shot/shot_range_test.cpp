@@ -42,7 +42,12 @@ TEST_F(ShotRanges, EndWhereTheReferenceSays) {
       {"material.m.ior", {"1", "5"}, {"0.999", "5.001"}},
       {"material.m.absorption", {"[0, 0, 1e30]"}, {"[-1, 0, 0]", "[0, 0, 1e39]"}},
       {"material.m.emission", {"[0, 0, 1e30]"}, {"[-1, 0, 0]", "[0, 0, 1e39]"}},
+      {"solver.newmark_beta", {"0.25", "1"}, {"0.2499", "1.001"}},
+      {"solver.newmark_gamma", {"0.5"}, {"0.4999", "1.001", "0.6"}},  // the last needs a greater beta
       {"solver.substeps", {"1", "10000"}, {"0", "10001"}},
+      {"solver.step_error", {"0", "1"}, {"-1e-9", "1.001"}},
+      {"solver.max_substeps", {"1", "65536"}, {"0", "65537"}},
+      {"solver.rest_tolerance", {"0", "1"}, {"-1e-9", "1.001"}},
       {"solver.tolerance", {"1e-16", "1"}, {"0", "1.001"}},
       {"solver.force_tolerance", {"1e-16", "1"}, {"0", "1.001"}},
       {"solver.max_iterations", {"1", "1000000"}, {"0", "1000001"}},

@@ -66,7 +66,10 @@ TEST(FrameKey, LooksChangeNothing) {
               s.camera.azimuth_deg = 0;
               s.materials["x"].appearance.roughness = 0;
               s.threads = 7;
-              s.solver.force_tolerance = 1e-9;  // of statics; this shot is dynamic and starts at rest
+              s.solver.max_newton_iterations = 9;     // of statics; this shot is dynamic and starts at rest
+              s.solver.max_substeps = 64;             // of error control, which is off
+              s.solver.newmark.beta = 0.3;            // of another integrator
+              s.solver.linearize = Linearize::Start;  // what "auto" is for this one
             }),
             0);
 }
@@ -112,9 +115,27 @@ TEST(FrameKey, MaterialsOfRegionsCountWhereverTheirNumbersChange) {
   EXPECT_NE(key(), stiffer) << "the surface points are the same, the elements need not be";
 }
 
+TEST(FrameKey, KnowsTheConstraintsAtEveryTimeThatErrorControlMayLookAt) {
+  // The pin is off but for a moment between two sub-steps, which only shorter steps can meet.
+  EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].active = {{1, 20.2}, {20.3, 60}}; }), 0);
+  Shot shot = simple_shot();
+  shot.solver.step_error = 1e-3;
+  BodyConstraints constraints = simple_constraints();
+  const auto before = simulation_keys(shot, constraints, "filled", "materials");
+  constraints.pins[0].active = {{1, 20.2}, {20.3, 60}};
+  const auto after = simulation_keys(shot, constraints, "filled", "materials");
+  EXPECT_EQ(before[19], after[19]);
+  EXPECT_NE(before[20], after[20]);
+}
+
 TEST(FrameKey, PhysicsChangesEveryFrame) {
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.substeps = 3; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.settings.fps = 25; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.integrator = Integrator::Newmark; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.linearize = Linearize::Predictor; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.step_error = 1e-3; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.rest_tolerance = 0; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.force_tolerance = 1e-5; }), 1) << "of rest";
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.rotation = RotationMethod::Energy; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.gravity.y() = -1.62; }), 1);
   EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].points = {0, 1}; }), 1);

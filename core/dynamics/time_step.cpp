@@ -1,0 +1,138 @@
+#include "core/dynamics/time_step.h"
+
+#include <algorithm>
+
+namespace softreel {
+namespace {
+
+/// True if the integrator takes the step with what it remembers of the last one.
+bool has_memory(const SolverParams& params, const SimulationState& state) {
+  switch (params.integrator) {
+    case Integrator::Bdf2:
+      return !state.previous_positions.empty();
+    case Integrator::Newmark:
+      return state.previous_seconds > 0;
+    case Integrator::Euler:
+      break;
+  }
+  return false;
+}
+
+/// Mean velocity of the node over the last step.
+Vec3 last_mean_velocity(const SolverParams& params, const SimulationState& state, std::size_t node) {
+  if (params.integrator == Integrator::Bdf2)
+    return (state.positions[node] - state.previous_positions[node]) / state.previous_seconds;
+  return state.velocities[node] - 0.5 * state.previous_seconds * state.accelerations[node];
+}
+
+/// Of the distance between predictor and end, what is the error of the end, by Taylor's series with steps of one
+/// length. Euler: h^2 a / 2 of h^2 a. BDF2: 2 / 9 of 2 / 9 + 5 / 12 times h^3 da/dt. Newmark: beta - 1 / 6 of beta
+/// times that.
+double error_share(const SolverParams& params, const SimulationState& state) {
+  if (params.integrator == Integrator::Newmark) return (params.newmark.beta - 1.0 / 6) / params.newmark.beta;
+  return has_memory(params, state) ? 8.0 / 23 : 0.5;
+}
+
+/// Euler: v = v0 + h a, x = x0 + h v.
+TimeStep begin_euler(const SimulationState& state, double h) {
+  return {h, {h, h}, state.positions, state.velocities};
+}
+
+/// Backward differentiation of second order for steps of any lengths, their ratio r = h / h0: the slope at the end of
+/// the parabola through y0 (a step of h0 earlier: yp) and y is (y - y0 - r^2 / (1 + 2 r) (y0 - yp)) (1 + 2 r) / ((1 +
+/// r) h), for y = x and y = v.
+TimeStep begin_bdf2(const SimulationState& state, double h) {
+  const double r = h / state.previous_seconds, back = r * r / (1 + 2 * r), seconds = h * (1 + r) / (1 + 2 * r);
+  TimeStep step = begin_euler(state, h);
+  step.seconds = {seconds, seconds};
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    step.base_positions[i] += back * (state.positions[i] - state.previous_positions[i]);
+    step.base_velocities[i] += back * (state.velocities[i] - state.previous_velocities[i]);
+  }
+  return step;
+}
+
+/// v = v0 + h ((1 - gamma) a0 + gamma a), x = x0 + h v0 + h^2 ((1/2 - beta) a0 + beta a), the latter with a by v.
+TimeStep begin_newmark(const NewmarkParams& newmark, const SimulationState& state, double h) {
+  const double share = newmark.beta / newmark.gamma;
+  TimeStep step = begin_euler(state, h);
+  step.seconds = {newmark.gamma * h, share * h};
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    step.base_positions[i] += (1 - share) * h * state.velocities[i] + (0.5 - share) * h * h * state.accelerations[i];
+    step.base_velocities[i] += (1 - newmark.gamma) * h * state.accelerations[i];
+  }
+  return step;
+}
+
+}  // namespace
+
+bool lacks_accelerations(const SolverParams& params, const SimulationState& state) {
+  return params.integrator == Integrator::Newmark && state.accelerations.empty();
+}
+
+TimeStep begin_time_step(const SolverParams& params, const SimulationState& state, double h) {
+  switch (params.integrator) {
+    case Integrator::Bdf2:
+      return has_memory(params, state) ? begin_bdf2(state, h) : begin_euler(state, h);
+    case Integrator::Newmark:
+      return begin_newmark(params.newmark, state, h);
+    case Integrator::Euler:
+      break;
+  }
+  return begin_euler(state, h);
+}
+
+HeldNode find_held_motion(const SolverParams& params, const SimulationState& state, std::size_t node,
+                          const Vec3& target, double h) {
+  const Vec3 mean = (target - state.positions[node]) / h;
+  if (!has_memory(params, state)) return {mean, Vec3::Zero()};
+  const Vec3 slope = 2 / (h + state.previous_seconds) * (mean - last_mean_velocity(params, state, node));
+  return {mean + 0.5 * h * slope, slope};
+}
+
+std::vector<Vec3> predict_positions(const SolverParams& params, const SimulationState& state, double h) {
+  std::vector<Vec3> predicted = state.positions;
+  const bool remembers = has_memory(params, state);
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    Vec3 change = h * state.velocities[i];
+    if (params.integrator == Integrator::Newmark)
+      change += 0.5 * h * h * state.accelerations[i];
+    else if (remembers)
+      change += 0.5 * h * h / state.previous_seconds * (state.velocities[i] - state.previous_velocities[i]);
+    predicted[i] += change;
+  }
+  return predicted;
+}
+
+Linearize linearization(const SolverParams& params) {
+  if (params.linearize != Linearize::Auto) return params.linearize;
+  return params.integrator == Integrator::Euler ? Linearize::Start : Linearize::Predictor;
+}
+
+double estimate_error(const SolverParams& params, const SimulationState& state, double h,
+                      std::span<const std::uint8_t> held, std::span<const Vec3> positions) {
+  const std::vector<Vec3> predicted = predict_positions(params, state, h);
+  double greatest = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (held[i] == 0) greatest = std::max(greatest, (positions[i] - predicted[i]).norm());
+  return error_share(params, state) * greatest;
+}
+
+void remember(const SolverParams& params, const TimeStep& step, const SimulationState& before,
+              std::span<const std::uint8_t> held, std::span<const Vec3> targets, SimulationState& after) {
+  if (params.integrator == Integrator::Euler && params.step_error == 0) return;
+  after.previous_seconds = step.h;
+  if (params.integrator == Integrator::Euler) return;
+  if (params.integrator == Integrator::Bdf2) {
+    after.previous_positions = before.positions;
+    after.previous_velocities = before.velocities;
+    return;
+  }
+  after.accelerations.resize(after.velocities.size());
+  for (std::size_t i = 0; i < after.velocities.size(); ++i)
+    after.accelerations[i] = held[i] != 0
+                                 ? find_held_motion(params, before, i, targets[i], step.h).acceleration
+                                 : Vec3((after.velocities[i] - step.base_velocities[i]) / step.seconds.velocity);
+}
+
+}  // namespace softreel

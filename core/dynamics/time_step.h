@@ -1,0 +1,50 @@
+/// The time integrators in one form, which the solvers of a step share (design 4.4).
+///
+/// With the acceleration a, the velocity v and the positions x at the step's end,
+///   v = base_velocities + seconds.velocity * a,   x = base_positions + seconds.position * v,   M a = f(x) - C v.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/dynamics/simulator.h"
+#include "core/elasticity/step_terms.h"
+
+namespace softreel {
+
+struct TimeStep {
+  double h = 0;  ///< length of the step, s
+  StepSeconds seconds;
+  std::vector<Vec3> base_positions;   ///< per node, m
+  std::vector<Vec3> base_velocities;  ///< per node, m/s
+};
+
+/// True if the step needs the accelerations at its start, and `state` does not hold them.
+bool lacks_accelerations(const SolverParams& params, const SimulationState& state);
+
+/// What the integrator makes of the state for a step of h seconds. A state without memory gives BDF2 a step of Euler.
+TimeStep begin_time_step(const SolverParams& params, const SimulationState& state, double h);
+
+/// Of nodes that are held and reach `target`: the slope of their last two steps and the velocity at the end, by the
+/// parabola through their last three places. So it is of second order and, unlike what Newmark would say of a given
+/// motion, forgets a jump after two steps. Euler, and a first step: the mean velocity.
+struct HeldNode {
+  Vec3 velocity, acceleration;
+};
+HeldNode find_held_motion(const SolverParams& params, const SimulationState& state, std::size_t node,
+                          const Vec3& target, double h);
+
+/// Where the nodes would be after the step if nothing changed, for Linearize::Predictor.
+std::vector<Vec3> predict_positions(const SolverParams& params, const SimulationState& state, double h);
+
+/// Greatest estimated error of the free nodes' `positions` at the end of a step of h seconds from `state`, m.
+double estimate_error(const SolverParams& params, const SimulationState& state, double h,
+                      std::span<const std::uint8_t> held, std::span<const Vec3> positions);
+
+/// The integrator's memory of `before`, in `after`. velocities of free nodes in `after` are those of the step's end.
+void remember(const SolverParams& params, const TimeStep& step, const SimulationState& before,
+              std::span<const std::uint8_t> held, std::span<const Vec3> targets, SimulationState& after);
+
+}  // namespace softreel

@@ -1,0 +1,252 @@
+// Steps of a frame: fixed, chosen by their error, and left out at rest.
+#include "core/dynamics/frame_steps.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/core/dynamics/dynamics_support.h"
+
+namespace softreel {
+namespace {
+
+using testing::Bench;
+using testing::body_model;
+
+constexpr double kFps = 24;
+
+/// A bar that is held at one end and carried to the right and back down between frames 2 and 4.
+BodyModel carried_bar(double damping_mass) {
+  BodyModel model = body_model(testing::kuhn_bar({4, 1, 1}, Vec3(0.8, 0.2, 0.2)), {4e4, 0.3, 1000, damping_mass, 0.02});
+  Transform away;
+  away.translate = Vec3(0.2, 0.1, 0);
+  Pin pin = testing::make_pin(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() < 1e-9; }));
+  pin.track = {{{2, {}, Ease::Smooth}, {4, away, Ease::Smooth}}};
+  model.pins = {pin};
+  return model;
+}
+
+SolverParams controlled(Integrator integrator, double step_error) {
+  SolverParams params;
+  params.integrator = integrator;
+  params.linearize = Linearize::Predictor;
+  params.tolerance = 1e-9;
+  params.step_error = step_error;
+  params.rest_tolerance = 0;
+  return params;
+}
+
+struct Motion {
+  int steps = 0, rejected = 0, at_rest = 0, parts = 0;
+  std::vector<Vec3> positions;
+  double shortest = 1;
+};
+
+Motion simulate(const BodyModel& model, const SolverParams& params, int frames) {
+  Bench bench(model, params);
+  Motion result;
+  for (int frame = 1; frame <= frames; ++frame) {
+    const FrameReport report = advance_to_frame(
+        bench.simulator, frame, kFps, [] {}, [&](int) { ++result.parts; });
+    EXPECT_TRUE(report.ok()) << frame;
+    result.steps += report.steps;
+    result.rejected += report.steps_rejected;
+    result.at_rest += report.steps_at_rest;
+    if (const double last = bench.simulator.state().previous_seconds; last > 0)
+      result.shortest = std::min(result.shortest, last);
+  }
+  result.positions = bench.simulator.state().positions;
+  return result;
+}
+
+double greatest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) greatest = std::max(greatest, (a[i] - b[i]).norm());
+  return greatest;
+}
+
+TEST(FrameSteps, AreSubstepsOfEqualLengthUnlessErrorsAreControlled) {
+  SolverParams params = controlled(Integrator::Bdf2, 0);
+  params.substeps = 3;
+  Bench bench(carried_bar(0), params), by_hand(carried_bar(0), params);
+  std::vector<int> parts;
+  int before = 0;
+  const FrameReport report = advance_to_frame(
+      bench.simulator, 1, kFps, [&] { ++before; }, [&](int part) { parts.push_back(part); });
+  for (int s = 1; s <= 3; ++s) ASSERT_TRUE(by_hand.simulator.step(s / 3.0, 1 / (kFps * 3)).ok());
+  EXPECT_TRUE(report.ok());
+  EXPECT_EQ(report.steps, 3);
+  EXPECT_EQ(before, 3);
+  EXPECT_EQ(parts, (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(bench.simulator.state().positions, by_hand.simulator.state().positions);
+}
+
+/// The body after `frames`, as exactly as many short steps of second order make it.
+SimulationState exact_state(const BodyModel& model, double frames) {
+  SolverParams params = controlled(Integrator::Newmark, 0);
+  Bench bench(model, params);
+  const int steps = 512;
+  for (int k = 1; k <= steps; ++k) EXPECT_TRUE(bench.simulator.step(frames * k / steps, frames / (kFps * steps)).ok());
+  return bench.simulator.state();
+}
+
+TEST(StepError, IsEstimatedToAFactorOfTwo) {
+  BodyModel model = carried_bar(0.5);
+  model.pins[0].track = testing::constant(Transform{});
+  const double h = 0.25;  // frames
+  const SimulationState before = exact_state(model, 2 - h), at = exact_state(model, 2),
+                        after = exact_state(model, 2 + h);
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
+    Bench bench(model, controlled(integrator, 1));
+    SimulationState start = at;
+    start.accelerations.clear();
+    start.previous_seconds = 0;
+    if (integrator == Integrator::Bdf2) {
+      start.previous_positions = before.positions;
+      start.previous_velocities = before.velocities;
+      start.previous_seconds = h / kFps;
+    }
+    bench.simulator.set_state(start);
+    const StepReport rejected = bench.simulator.step(2 + h, h / kFps, 1e-12);
+    EXPECT_TRUE(rejected.rejected);
+    EXPECT_EQ(bench.simulator.state().positions, start.positions);
+    EXPECT_TRUE(bench.simulator.state().accelerations.empty());
+    const StepReport report = bench.simulator.step(2 + h, h / kFps, 1);
+    EXPECT_EQ(report.error, rejected.error);
+    const double size = Vec3(0.8, 0.2, 0.2).norm();
+    const double error = greatest_distance(bench.simulator.state().positions, after.positions) / size;
+    EXPECT_GT(report.error, 0.5 * error) << static_cast<int>(integrator);
+    EXPECT_LT(report.error, 2 * error) << static_cast<int>(integrator);
+  }
+}
+
+TEST(FrameSteps, GetShorterUntilTheErrorIsWhatWasAskedFor) {
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
+    const BodyModel model = carried_bar(0.5);
+    SolverParams fine = controlled(integrator, 0);
+    fine.substeps = integrator == Integrator::Euler ? 2048 : 512;
+    const std::vector<Vec3> exact = simulate(model, fine, 6).positions;
+    double last_distance = 1;
+    int last_steps = 0;
+    for (const double step_error : {1e-3, 1e-4, 1e-5}) {
+      const Motion found = simulate(model, controlled(integrator, step_error), 6);
+      EXPECT_EQ(found.parts, 6) << "every frame is met";
+      EXPECT_GT(found.steps, last_steps);
+      EXPECT_LT(found.rejected, found.steps);
+      const double distance = greatest_distance(found.positions, exact);
+      EXPECT_LT(distance, 0.7 * last_distance) << step_error;
+      EXPECT_LT(distance, 2 * found.steps * step_error) << "errors of steps at most add up, over a size of 0.85 m";
+      last_distance = distance;
+      last_steps = found.steps;
+    }
+  }
+}
+
+TEST(FrameSteps, GrowAgainWhereNothingMuchHappens) {
+  BodyModel model = carried_bar(20);
+  model.gravity.setZero();
+  SolverParams params = controlled(Integrator::Bdf2, 1e-5);
+  Bench bench(model, params);
+  std::vector<int> steps;
+  for (int frame = 1; frame <= 60; ++frame) {
+    const FrameReport report = advance_to_frame(
+        bench.simulator, frame, kFps, [] {}, [](int) {});
+    ASSERT_TRUE(report.ok());
+    steps.push_back(report.steps);
+  }
+  EXPECT_EQ(steps.front(), 1) << "at rest";
+  EXPECT_GT(steps[2], 4) << "the pin moves";
+  EXPECT_EQ(steps.back(), 1) << "at rest again";
+}
+
+TEST(FrameSteps, SayThatTheShortestStepIsTooLong) {
+  BodyModel model = carried_bar(0);
+  Transform away;
+  away.translate = Vec3(0.2, 0.1, 0);
+  model.pins[0].track = {{{0, {}, Ease::Constant}, {3, away, Ease::Constant}}};  // jumps
+  SolverParams params = controlled(Integrator::Bdf2, 1e-4);
+  params.max_substeps = 64;
+  Bench bench(model, params);
+  FrameReport report;
+  for (int frame = 1; frame <= 3; ++frame)
+    report = advance_to_frame(
+        bench.simulator, frame, kFps, [] {}, [](int) {});
+  EXPECT_TRUE(report.too_short);
+  EXPECT_FALSE(report.ok());
+  EXPECT_TRUE(report.last.ok()) << "it was solved";
+  EXPECT_GT(report.last.error, 1e-4);
+}
+
+TEST(FrameSteps, ContinueAStoredFrameWithTheSameBitsUnderErrorControl) {
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
+    const SolverParams params = controlled(integrator, 1e-4);
+    Bench whole(carried_bar(0.5), params), resumed(carried_bar(0.5), params);
+    int shorter = 0;
+    for (int frame = 1; frame <= 6; ++frame) {
+      if (frame == 4) resumed.simulator.set_state(whole.simulator.state());
+      const FrameReport report = advance_to_frame(
+          whole.simulator, frame, kFps, [] {}, [](int) {});
+      shorter += report.steps > 1 ? 1 : 0;
+      if (frame < 4) continue;
+      const FrameReport again = advance_to_frame(
+          resumed.simulator, frame, kFps, [] {}, [](int) {});
+      EXPECT_EQ(again.steps, report.steps);
+      EXPECT_EQ(again.steps_rejected, report.steps_rejected);
+    }
+    EXPECT_GT(shorter, 3);
+    EXPECT_EQ(whole.simulator.state().positions, resumed.simulator.state().positions);
+    EXPECT_EQ(whole.simulator.state().velocities, resumed.simulator.state().velocities);
+  }
+}
+
+TEST(Rest, LeavesABodyInBalanceToTheLastBitUntilItsPinMoves) {
+  Bench bench(carried_bar(1));
+  ASSERT_TRUE(bench.simulator.find_equilibrium(1).ok());
+  const SimulationState balanced = bench.simulator.state();
+  const FrameReport still = advance_to_frame(
+      bench.simulator, 2, kFps, [] {}, [](int) {});
+  EXPECT_EQ(still.steps_at_rest, 1);
+  EXPECT_EQ(still.linear_iterations, 0);
+  EXPECT_EQ(bench.simulator.state().positions, balanced.positions);
+  EXPECT_EQ(bench.simulator.state().velocities, balanced.velocities);
+  for (std::size_t e = 0; e < balanced.rotations.size(); ++e)
+    EXPECT_EQ(bench.simulator.state().rotations[e].coeffs(), balanced.rotations[e].coeffs());
+  const FrameReport moving = advance_to_frame(
+      bench.simulator, 3, kFps, [] {}, [](int) {});
+  EXPECT_EQ(moving.steps_at_rest, 0);
+  EXPECT_NE(bench.simulator.state().positions, balanced.positions);
+}
+
+TEST(Rest, IsNotTheTurnOfASwingNorABodyThatFalls) {
+  SolverParams params;
+  Bench falling(body_model(testing::kuhn_bar({2, 1, 1}, Vec3(0.4, 0.2, 0.2)), {4e4, 0.3, 1000, 0, 0}), params);
+  EXPECT_FALSE(falling.simulator.step(1, 1 / kFps).at_rest);
+  BodyModel model = body_model(testing::kuhn_bar({2, 1, 1}, Vec3(0.4, 0.2, 0.2)), {4e4, 0.3, 1000, 0, 0});
+  model.gravity.setZero();
+  Bench swinging(model, params);
+  EXPECT_TRUE(swinging.simulator.step(1, 1 / kFps).at_rest) << "nothing acts";
+  SimulationState stretched = swinging.simulator.state();
+  for (Vec3& position : stretched.positions) position.x() *= 1.01;
+  swinging.simulator.set_state(stretched);
+  EXPECT_FALSE(swinging.simulator.step(2, 1 / kFps).at_rest) << "still, but not in balance";
+}
+
+TEST(Rest, ChangesNothingBeyondItsTolerance) {
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
+    SolverParams stepped;
+    stepped.integrator = integrator;
+    stepped.rest_tolerance = 0;
+    SolverParams skipped = stepped;
+    skipped.rest_tolerance = 1e-6;
+    skipped.force_tolerance = 1e-5;
+    // Damped by 20 / s in its mass, it comes to rest within two seconds after its pin does.
+    const Motion all = simulate(carried_bar(20), stepped, 240), some = simulate(carried_bar(20), skipped, 240);
+    EXPECT_EQ(all.at_rest, 0);
+    EXPECT_GT(some.at_rest, 60) << static_cast<int>(integrator);
+    EXPECT_EQ(some.steps, all.steps);
+    EXPECT_LT(greatest_distance(all.positions, some.positions), 3e-5);
+  }
+}
+
+}  // namespace
+}  // namespace softreel

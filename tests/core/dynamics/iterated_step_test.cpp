@@ -1,0 +1,159 @@
+// Steps that are iterated to force balance, and the potential that they minimise.
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/dynamics/simulator.h"
+#include "core/dynamics/step_potential.h"
+#include "core/elasticity/assembly.h"
+#include "core/elasticity/mass.h"
+#include "tests/core/dynamics/dynamics_support.h"
+
+namespace softreel {
+namespace {
+
+using testing::Bench;
+using testing::body_model;
+using testing::exact_params;
+
+TetMesh thin_bar() {
+  return testing::kuhn_bar({4, 1, 1}, Vec3(0.8, 0.2, 0.2));
+}
+
+SolverParams iterated_params(Integrator integrator = Integrator::Euler) {
+  SolverParams params = exact_params();
+  params.force_tolerance = 1e-10;
+  params.integrator = integrator;
+  params.linearize = Linearize::Iterated;
+  return params;
+}
+
+BodyModel pinned_bar(double damping_stiffness = 0) {
+  BodyModel model = body_model(thin_bar(), {2e4, 0.3, 1000, 0, damping_stiffness});
+  model.pins = {testing::make_pin(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() < 1e-9; }))};
+  return model;
+}
+
+std::vector<Vec3> random_vectors(std::size_t count, double size, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<Vec3> vectors;
+  for (std::size_t i = 0; i < count; ++i)
+    vectors.push_back(size * Vec3(normal(random), normal(random), normal(random)));
+  return vectors;
+}
+
+TEST(StepPotential, HasItsForcesAsGradient) {
+  const TetMesh mesh = thin_bar();
+  const std::size_t n = mesh.nodes.size();
+  const Threads threads(1);
+  const std::vector<ElementMaterial> materials(mesh.tets.size());
+  const ElasticBody body = make_elastic_body(mesh, materials, Dilatation::Capped);
+  StepPotential potential{std::vector<double>(n, 3.0),
+                          random_vectors(n, 1, 1),
+                          random_vectors(n, 1, 2),
+                          {stiffness_pattern(mesh.tets, static_cast<Index>(n)), {}}};
+  StiffnessTerms terms;
+  const std::vector<Quaternion> rotations(mesh.tets.size(), Quaternion::Identity());
+  find_stiffness_terms(body, mesh.nodes, rotations, std::vector<double>(mesh.tets.size(), 1e-4), Curvature::None, terms,
+                       {}, threads);
+  StiffnessAssembler(mesh.tets, potential.damping_stiffness.pattern)
+      .assemble(terms, std::vector<double>(n, 0.0), potential.damping_stiffness, threads);
+  const std::vector<Vec3> direction = random_vectors(n, 1, 3);
+  std::vector<Vec3> forces(n), unused(n), moved(n);
+  const auto energy_at = [&](double step) {
+    for (std::size_t i = 0; i < n; ++i) moved[i] = mesh.nodes[i] + step * direction[i];
+    return potential.evaluate(moved, unused, threads);
+  };
+  potential.evaluate(mesh.nodes, forces, threads);
+  double slope = 0;
+  for (std::size_t i = 0; i < n; ++i) slope -= forces[i].dot(direction[i]);
+  EXPECT_NEAR((energy_at(1e-3) - energy_at(-1e-3)) / 2e-3, slope, 1e-9 * std::abs(slope));
+}
+
+/// Elastic forces, weight and inertia of the step from `before` on free nodes, N: what implicit Euler makes zero.
+TEST(IteratedStep, BalancesAllForcesAtItsEnd) {
+  const double h = 1.0 / 24;
+  const BodyModel model = pinned_bar();
+  Bench bench(model, iterated_params());
+  for (int k = 1; k <= 5; ++k) {
+    const SimulationState before = bench.simulator.state();
+    const StepReport report = bench.simulator.step(k, h);
+    ASSERT_TRUE(report.ok()) << report.culprit;
+    EXPECT_GT(report.nonlinear_iterations, 1);
+    const SimulationState& after = bench.simulator.state();
+    const ElasticBody body = make_elastic_body(model.mesh, model.materials, Dilatation::Capped);
+    const NodalMasses masses = lump_masses(model.mesh, model.materials);
+    std::vector<Quaternion> rotations = after.rotations;
+    std::vector<Mat3> stresses(rotations.size());
+    std::vector<Vec3> forces(after.positions.size());
+    find_rotations(body, RotationMethod::Consistent, after.positions, rotations, bench.threads);
+    find_stresses(body, after.positions, rotations, stresses, bench.threads);
+    gather_forces(body, stresses, forces, bench.threads);
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      if (after.positions[i] == model.mesh.nodes[i]) continue;  // pinned
+      const Vec3 inertia = masses.mass[i] / h * (after.velocities[i] - before.velocities[i]);
+      const Vec3 weight = masses.mass[i] * model.gravity;
+      EXPECT_LT((forces[i] + weight - inertia).norm(), 1e-7 * weight.norm());
+    }
+  }
+}
+
+TEST(IteratedStep, ReachesTheStaticShapeInOneEndlessStep) {
+  Bench dynamic(pinned_bar(), iterated_params()), still(pinned_bar(), iterated_params());
+  ASSERT_TRUE(dynamic.simulator.step(1, 1e6).ok());
+  ASSERT_TRUE(still.simulator.find_equilibrium(1).ok());
+  double sag = 0;
+  for (std::size_t i = 0; i < still.simulator.state().positions.size(); ++i) {
+    const Vec3 expected = still.simulator.state().positions[i];
+    EXPECT_LT((dynamic.simulator.state().positions[i] - expected).norm(), 1e-7);
+    sag = std::max(sag, (expected - still.simulator.model().mesh.nodes[i]).norm());
+  }
+  EXPECT_GT(sag, 0.1) << "far beyond the linear";
+}
+
+TEST(IteratedStep, TakesPinsThatJumpAndScrambledNodes) {
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
+    BodyModel model = pinned_bar(0.002);
+    Transform jump;
+    jump.translate = Vec3(0, 0.4, 0);
+    jump.rotate = Vec3(1, 0, 0);
+    model.pins[0].track = {{{0, {}, Ease::Constant}, {3, jump, Ease::Constant}}};
+    Bench bench(model, iterated_params(integrator));
+    SimulationState state = bench.simulator.state();
+    const std::vector<Vec3> noise = random_vectors(state.positions.size(), 0.3, 5);
+    for (std::size_t i = 0; i < noise.size(); ++i) state.positions[i] += noise[i];
+    bench.simulator.set_state(state);
+    const double energy = bench.simulator.measure().elastic_energy;
+    for (int k = 1; k <= 8; ++k) {
+      const StepReport report = bench.simulator.step(k, 1.0 / 24);
+      ASSERT_TRUE(report.ok()) << k << ": " << report.culprit;
+      if (k == 1) {
+        EXPECT_LT(bench.simulator.measure().elastic_energy, energy);
+      }
+    }
+    const auto node = static_cast<std::size_t>(model.pins[0].points[0]);
+    EXPECT_EQ(bench.simulator.state().positions[node], jump.apply(model.mesh.nodes[node]));
+  }
+}
+
+TEST(IteratedStep, FindsTheSameBitsOnOneAndFourThreads) {
+  Bench one(pinned_bar(0.002), iterated_params(), 1), four(pinned_bar(0.002), iterated_params(), 4);
+  for (int k = 1; k <= 3; ++k) {
+    ASSERT_TRUE(one.simulator.step(k, 1.0 / 24).ok());
+    ASSERT_TRUE(four.simulator.step(k, 1.0 / 24).ok());
+  }
+  EXPECT_EQ(one.simulator.state().positions, four.simulator.state().positions);
+}
+
+TEST(IteratedStep, ServesRotationsWithoutAnEnergyByTheResidual) {
+  SolverParams params = iterated_params();
+  params.rotation = RotationMethod::Energy;
+  params.force_tolerance = 1e-6;
+  Bench bench(pinned_bar(), params);
+  for (int k = 1; k <= 3; ++k) ASSERT_TRUE(bench.simulator.step(k, 1.0 / 24).ok());
+}
+
+}  // namespace
+}  // namespace softreel

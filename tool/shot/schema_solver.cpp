@@ -1,0 +1,117 @@
+// The table of how the motion is computed.
+#include <fmt/format.h>
+
+#include "tool/shot/codecs.h"
+#include "tool/shot/schema_tables.h"
+
+namespace softreel {
+namespace {
+
+constexpr int kMostSubsteps = 65536;
+
+void check_substeps(const Place& place, const TomlValue& value, const SolverParams& solver) {
+  if (solver.step_error == 0 || solver.max_substeps >= solver.substeps) return;
+  const char* name = value.find("max_substeps") != nullptr ? "max_substeps" : "substeps";
+  const FieldText text{"", "", "", "", "max_substeps not below substeps", "", false, false};
+  throw value_error(
+      {place.path + "." + name, &text, place.problems}, *value.find(name),
+      fmt::format("a frame cannot have at least {} and at most {} steps", solver.substeps, solver.max_substeps),
+      "Raise max_substeps.");
+}
+
+void check_newmark(const Place& place, const TomlValue& value, const NewmarkParams& newmark) {
+  if (newmark.is_stable()) return;
+  const TomlValue* beta = value.find("newmark_beta");
+  const char* name = beta != nullptr ? "newmark_beta" : "newmark_gamma";
+  const FieldText text{"", "", "", "", "2 newmark_beta at least newmark_gamma", "", false, false};
+  throw value_error(
+      {place.path + "." + name, &text, place.problems}, *value.find(name),
+      fmt::format("twice newmark_beta = {:.6g} is below newmark_gamma = {:.6g}, so that long steps blow up",
+                  newmark.beta, newmark.gamma),
+      fmt::format("Say newmark_beta = {:.6g}, or leave both out for 1/4 and 1/2.", 0.5 * newmark.gamma));
+}
+
+}  // namespace
+
+const Table<Shot>& solver_table() {
+  static const Table<Shot> table = [] {
+    Table<Shot> t;
+    const auto of_solver = [](auto member) {
+      return [member](auto& s) -> auto& {
+        return s.solver.*member;
+      };
+    };
+    using P = SolverParams;
+    const auto of_newmark = [](auto member) {
+      return [member](auto& s) -> auto& {
+        return s.solver.newmark.*member;
+      };
+    };
+    constexpr Range kTolerance{0, 1, true};
+    t.sentence = "How the motion is computed.";
+    t.add("rotation", of_solver(&P::rotation),
+          choice<RotationMethod>({{"consistent", RotationMethod::Consistent},
+                                  {"energy", RotationMethod::Energy},
+                                  {"paper", RotationMethod::Paper},
+                                  {"polar_smooth", RotationMethod::PolarSmooth},
+                                  {"qr", RotationMethod::Qr},
+                                  {"none", RotationMethod::None}}),
+          "",
+          "Of each tetrahedron: polar, by the paper's energy safely or by its bare Newton, polar averaged over "
+          "neighbours, Gram-Schmidt (depends on the order of nodes), or none (small strain only).")
+        .add("dilatation", of_solver(&P::dilatation),
+             choice<Dilatation>({{"capped", Dilatation::Capped}, {"linear", Dilatation::Linear}}), "",
+             "\"capped\" keeps strong stretch stable; \"linear\" is the bare linear material.")
+        .add("integrator", of_solver(&P::integrator),
+             choice<Integrator>(
+                 {{"euler", Integrator::Euler}, {"bdf2", Integrator::Bdf2}, {"newmark", Integrator::Newmark}}),
+             "",
+             "dynamic: \"euler\" forgives most and damps most, \"bdf2\" damps what is fast only, \"newmark\" keeps "
+             "energy (at its defaults).")
+        .add("newmark_beta", of_newmark(&NewmarkParams::beta), number({0.25, 1}), "",
+             "\"newmark\": share of the last acceleration in the way, halved. At least newmark_gamma / 2.")
+        .add("newmark_gamma", of_newmark(&NewmarkParams::gamma), number({0.5, 1}), "",
+             "\"newmark\": share of the last acceleration in the velocity. Above 0.5 it damps and is of first order.")
+        .add("linearize", of_solver(&P::linearize),
+             choice<Linearize>({{"auto", Linearize::Auto},
+                                {"start", Linearize::Start},
+                                {"predictor", Linearize::Predictor},
+                                {"iterated", Linearize::Iterated}}),
+             "",
+             "dynamic: a step's one solve takes rotations and forces at its \"start\" (of first order) or at the "
+             "\"predictor\" of its end (keeps second order); \"iterated\" solves until forces balance at its end. "
+             "\"auto\" is \"start\" for \"euler\", else \"predictor\".")
+        .add("substeps", of_solver(&P::substeps), whole<int>(1, 10000), "per frame",
+             "Steps of time in a frame; with step_error, the fewest.")
+        .add("step_error", of_solver(&P::step_error), number({0, 1}), "",
+             "dynamic: steps get shorter until their estimated error of place, over the body's size, is below; 0: off.")
+        .add("max_substeps", of_solver(&P::max_substeps), whole<int>(1, kMostSubsteps), "per frame",
+             "step_error: the most steps of a frame. If they do not do, the run stops and says so.")
+        .add("rest_tolerance", of_solver(&P::rest_tolerance), number({0, 1}), "",
+             "dynamic: a body is not stepped if its velocities would move no point by more than this times its size, "
+             "its "
+             "forces balance to force_tolerance and its pins stay; 0: every body is stepped.")
+        .add("tolerance", of_solver(&P::tolerance), number(kTolerance), "",
+             "dynamic: residual of a step's linear solve over its right-hand side.")
+        .add("force_tolerance", of_solver(&P::force_tolerance), number(kTolerance), "",
+             "static, iterated: residual force over the body's scale of force.")
+        .add("max_iterations", of_solver(&P::max_iterations), whole<int>(1, 1000000), "", "Of one linear solve.")
+        .add("max_newton_iterations", of_solver(&P::max_newton_iterations), whole<int>(1, 1000000), "",
+             "static: per frame; iterated: per step.")
+        .add(
+            "galerkin", [](auto& s) -> auto& { return s.solver.multigrid.galerkin; },
+            choice<GalerkinMethod>({{"gather", GalerkinMethod::Gather},
+                                    {"stream", GalerkinMethod::Stream},
+                                    {"naive", GalerkinMethod::Naive}}),
+            "", "How coarse matrices are formed; all give the same up to round-off.")
+        .add("threads", &Shot::threads, whole<int>(0, 4096), "", "0: all processors. Results do not depend on it.");
+    t.check = [](const Place& place, const TomlValue& value, Shot& shot) {
+      check_newmark(place, value, shot.solver.newmark);
+      check_substeps(place, value, shot.solver);
+    };
+    return t;
+  }();
+  return table;
+}
+
+}  // namespace softreel
