@@ -128,6 +128,7 @@ void Simulator::set_state(SimulationState state) {
   CHECK(state.positions.size() == parts_->nodes());
   CHECK(state.velocities.size() == parts_->nodes());
   CHECK(state.rotations.size() == parts_->body.tets.size());
+  CHECK((state.troubles.empty() || state.troubles.size() == parts_->body.tets.size()));
   parts_->state = std::move(state);
   parts_->coarse_lag.usable = false;
 }

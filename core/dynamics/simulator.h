@@ -10,6 +10,7 @@
 #include "core/base/timer.h"
 #include "core/base/types.h"
 #include "core/constraints/constraints.h"
+#include "core/dynamics/recovery.h"
 #include "core/elasticity/elastic_body.h"
 #include "core/elasticity/material.h"
 #include "core/multigrid/multigrid.h"
@@ -21,6 +22,7 @@ namespace softreel {
 struct SolverParams {
   RotationMethod rotation = RotationMethod::Consistent;
   Dilatation dilatation = Dilatation::Capped;
+  bool recovery = true;             ///< of elements that stay inverted in dynamics; not with rotation None
   int substeps = 1;                 ///< per frame
   double tolerance = 1e-3;          ///< of the linear solve of a step: |r| / |b|
   double force_tolerance = 1e-6;    ///< statics: |residual force| over the force scale of the body
@@ -46,6 +48,7 @@ struct SimulationState {
   std::vector<Vec3> positions;        ///< nodes x 3, m
   std::vector<Vec3> velocities;       ///< nodes x 3, m/s
   std::vector<Quaternion> rotations;  ///< per element, warm start of the next extraction
+  ElementTroubles troubles = {};      ///< of recovery: empty while all is well
 };
 
 /// What a step did. If it could not be solved, `culprit` names the element (with its centroid) or constraint to blame.
@@ -53,6 +56,7 @@ struct StepReport {
   SolveReport solve;
   int nonlinear_iterations = 1;
   std::string culprit;
+  RecoveryReport recovery = {};
   bool ok() const { return solve.ok(); }
 };
 

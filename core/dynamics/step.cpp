@@ -92,7 +92,8 @@ SolveReport solve_step(Simulator::Parts& parts, StepWork& work) {
 
 /// The state after the step; held nodes reach their targets exactly.
 SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
-  SimulationState next{parts.state.positions, parts.state.velocities, std::move(work.rotations)};
+  SimulationState next{parts.state.positions, parts.state.velocities, std::move(work.rotations),
+                       std::move(work.troubles)};
   for (std::size_t i = 0; i < parts.nodes(); ++i) {
     if (work.pinned.held[i] != 0) {
       next.velocities[i] = (work.pinned.targets[i] - next.positions[i]) / work.h;
@@ -123,17 +124,14 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work) {
 }
 
 StepReport Simulator::Parts::step(double frame, double seconds) {
-  StepWork work{seconds, pins.at(frame), pulls_at(frame), state.rotations, {}, {}, {}, {}};
+  StepWork work{seconds, pins.at(frame), pulls_at(frame), state.rotations, {}, {}, {}, {}, state.troubles};
   StepReport report;
   if (!work.pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
     report.culprit = work.pinned.conflict;
     return report;
   }
-  {
-    const ScopedStage stage(times, "simulate/rotate");
-    find_rotations(body, params.rotation, state.positions, work.rotations, threads);
-  }
+  report.recovery = find_step_rotations(*this, frame, work);
   report.solve = solve_step(*this, work);
   if (frame == std::floor(frame)) coarse_lag.usable = false;
   if (report.ok()) {

@@ -18,7 +18,11 @@ struct StepWork {
   std::vector<Vec3> velocities;    ///< at the start; of held nodes, those that carry them to their targets
   std::vector<double> node_terms;  ///< mass part of S
   std::vector<Vec3> right_side, change;
+  ElementTroubles troubles = {};  ///< in: of the step before; find_step_rotations counts this one
 };
+
+/// work.rotations at the step's start, shared where recovery acts; says in the log where it begins and ends.
+RecoveryReport find_step_rotations(Simulator::Parts& parts, double frame, StepWork& work);
 
 bool all_finite(std::span<const Vec3> vectors);
 

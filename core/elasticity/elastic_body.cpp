@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <Eigen/LU>
+
 #include "core/elasticity/element_rotation.h"
 #include "core/elasticity/rotation_rivals.h"
 
@@ -35,6 +37,29 @@ void find_batch(const ElasticBody& body, std::span<const Vec3> positions, std::s
     const std::size_t lane = e - begin;
     rotations[e] = Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]);
   }
+}
+
+std::int64_t find_all_consistent(const ElasticBody& body, std::span<const Vec3> positions,
+                                 std::span<Quaternion> rotations, const Threads& threads) {
+  constexpr std::int64_t kBatchGrain = kElementGrain / kElementLanes;
+  const std::span<const ElementBatch> batches = body.batches;
+  return static_cast<std::int64_t>(threads.sum_chunks(
+      static_cast<std::int64_t>(batches.size()), kBatchGrain, [&](std::int64_t begin, std::int64_t end) {
+        return static_cast<double>(find_consistent_rotations(
+            batches, positions, rotations, static_cast<std::size_t>(begin), static_cast<std::size_t>(end)));
+      }));
+}
+
+std::int64_t count_flat(const ElasticBody& body, std::span<const Vec3> positions, const Threads& threads) {
+  return static_cast<std::int64_t>(threads.sum_chunks(
+      static_cast<std::int64_t>(body.tets.size()), kElementGrain, [&](std::int64_t begin, std::int64_t end) {
+        double flat = 0;
+        for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e)
+          if (deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], positions)).determinant() <
+              kFlatVolume)
+            ++flat;
+        return flat;
+      }));
 }
 
 }  // namespace
@@ -77,13 +102,7 @@ void find_rotations(const ElasticBody& body, RotationMethod method, std::span<co
     return;
   }
   if (method == RotationMethod::Consistent) {
-    constexpr std::int64_t kBatchGrain = kElementGrain / kElementLanes;
-    const std::span<const ElementBatch> batches = body.batches;
-    threads.for_chunks(static_cast<std::int64_t>(batches.size()), kBatchGrain,
-                       [&](std::int64_t begin, std::int64_t end) {
-                         find_consistent_rotations(batches, positions, rotations, static_cast<std::size_t>(begin),
-                                                   static_cast<std::size_t>(end));
-                       });
+    find_all_consistent(body, positions, rotations, threads);
     return;
   }
   if (method != RotationMethod::Energy) {
@@ -96,6 +115,13 @@ void find_rotations(const ElasticBody& body, RotationMethod method, std::span<co
                          find_batch(body, positions, rotations, static_cast<std::size_t>(e),
                                     static_cast<std::size_t>(std::min<std::int64_t>(e + kRotationLanes, end)));
                      });
+}
+
+std::int64_t find_rotations_and_flat(const ElasticBody& body, RotationMethod method, std::span<const Vec3> positions,
+                                     std::span<Quaternion> rotations, const Threads& threads) {
+  if (method == RotationMethod::Consistent) return find_all_consistent(body, positions, rotations, threads);
+  find_rotations(body, method, positions, rotations, threads);
+  return count_flat(body, positions, threads);
 }
 
 void find_stresses(const ElasticBody& body, std::span<const Vec3> positions, std::span<const Quaternion> rotations,

@@ -65,6 +65,11 @@ inline TetNodes nodes_of(const Tet& tet, std::span<const Vec3> positions) {
 void find_rotations(const ElasticBody& body, RotationMethod method, std::span<const Vec3> positions,
                     std::span<Quaternion> rotations, const Threads& threads);
 
+/// find_rotations; returns how many elements have det F below kFlatVolume. The consistent method has that at hand, the
+/// others look in a pass of their own.
+std::int64_t find_rotations_and_flat(const ElasticBody& body, RotationMethod method, std::span<const Vec3> positions,
+                                     std::span<Quaternion> rotations, const Threads& threads);
+
 /// Weighted first Piola stress V Q sigma of each element, N m.
 void find_stresses(const ElasticBody& body, std::span<const Vec3> positions, std::span<const Quaternion> rotations,
                    std::span<Mat3> stresses, const Threads& threads);
