@@ -103,6 +103,9 @@ const Table<Shot>& solver_table() {
         .add("dilatation", of_solver(&P::dilatation),
              choice<Dilatation>({{"capped", Dilatation::Capped}, {"linear", Dilatation::Linear}}), "",
              "\"capped\" keeps strong stretch stable; \"linear\" is the bare linear material.")
+        .add("recovery", of_solver(&P::recovery), toggle(), "",
+             "dynamic: untangle elements that stay inverted or wound round an edge, by one rotation for each patch of "
+             "them.")
         .add("substeps", of_solver(&P::substeps), whole<int>(1, 10000), "per frame", "Steps of time in a frame.")
         .add("tolerance", of_solver(&P::tolerance), number(kTolerance), "",
              "dynamic: residual of a step's linear solve over its right-hand side.")

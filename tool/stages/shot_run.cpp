@@ -77,6 +77,7 @@ SimulationCounts ShotRun::counts(int last) const {
     sum.linear_iterations += counts.linear_iterations;
     sum.nonlinear_iterations += counts.nonlinear_iterations;
     sum.saved_seconds += counts.saved_seconds;
+    sum.recoveries.insert(sum.recoveries.end(), counts.recoveries.begin(), counts.recoveries.end());
   }
   return sum;
 }

@@ -1,5 +1,7 @@
 #include "tool/stages/simulate_stage.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/base/check.h"
@@ -15,6 +17,7 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.positions);
   out.put_array(frame.state.velocities);
   out.put_array(frame.state.rotations);
+  out.put_array(frame.state.troubles);
   out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
   for (const auto& step : frame.earlier_steps) out.put_array(step);
   return out.take();
@@ -26,6 +29,7 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
   frame.state.positions = in.get_array<Vec3>();
   frame.state.velocities = in.get_array<Vec3>();
   frame.state.rotations = in.get_array<Quaternion>();
+  frame.state.troubles = in.get_array<ElementTrouble>();
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
   return frame;
@@ -34,6 +38,7 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
 void count(BodyFrame& frame, const StepReport& report) {
   frame.linear_iterations += report.solve.iterations;
   frame.nonlinear_iterations += report.nonlinear_iterations;
+  frame.recovering_elements = std::max(frame.recovering_elements, report.recovery.elements);
 }
 
 StageKey materials_key(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded) {
@@ -143,6 +148,7 @@ void BodySimulation::produce(int frame) {
     counts_.computed += 1;
     counts_.linear_iterations += made.linear_iterations;
     counts_.nonlinear_iterations += made.nonlinear_iterations;
+    if (made.recovering_elements > 0) counts_.recoveries.push_back({settings_.name, frame, made.recovering_elements});
   }
   frame_ = std::move(made);
   frame_number_ = frame;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/dynamics/simulator.h"
@@ -17,13 +18,22 @@ struct BodyFrame {
   SimulationState state;                         ///< at the frame
   std::vector<std::vector<Vec3>> earlier_steps;  ///< node positions after each sub-step of the frame but the last
   int linear_iterations = 0, nonlinear_iterations = 0;  ///< summed over the sub-steps; 0 if from the cache
+  Index recovering_elements = 0;                        ///< most in a sub-step; 0 if from the cache
+};
+
+/// Recovery at work in a frame.
+struct FrameRecovery {
+  std::string body;
+  int frame = 0;
+  Index elements = 0;  ///< most that shared a rotation in a sub-step
 };
 
 /// What a run did and what it need not do, of one body or of several.
 struct SimulationCounts {
   int computed = 0, loaded = 0, not_needed = 0;
   std::int64_t linear_iterations = 0, nonlinear_iterations = 0;
-  double saved_seconds = 0;  ///< what the frames that were not computed took when they were
+  double saved_seconds = 0;               ///< what the frames that were not computed took when they were
+  std::vector<FrameRecovery> recoveries;  ///< of the computed frames
 };
 
 /// Nothing is filled or simulated before it is asked for. Not thread-safe.

@@ -170,6 +170,7 @@ poisson_ratio = 0.49
 [solver]
 rotation = "energy"
 dilatation = "linear"
+recovery = false
 substeps = 3
 tolerance = 1e-5
 force_tolerance = 1e-7
