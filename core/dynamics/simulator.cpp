@@ -49,15 +49,25 @@ Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params,
       pins(model.pins, model.embedding, model.mesh),
       pieces(find_pieces(model.mesh.tets, model.mesh.nodes.size())),
       matrix{stiffness_pattern(model.mesh.tets, static_cast<Index>(model.mesh.nodes.size())), {}},
-      assembler(model.mesh.tets, matrix.pattern),
-      multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern, params.multigrid, threads),
-      float_assembler(model.mesh.tets, body.node_elements, multigrid.float_matrix().pattern, multigrid.row_of_node()),
-      stresses(model.mesh.tets.size()) {
+      multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern, params.multigrid, threads) {
   if (const std::string conflict = pins.find_conflict(); !conflict.empty()) throw input_error(conflict);
+  damping_stiffness.reserve(model.materials.size());
   for (const ElementMaterial& material : model.materials) damping_stiffness.push_back(material.damping_stiffness);
   state.positions = model.mesh.nodes;
   state.velocities.assign(model.mesh.nodes.size(), Vec3::Zero());
   state.rotations.assign(model.mesh.tets.size(), Quaternion::Identity());
+}
+
+const StiffnessAssembler& Simulator::Parts::assembler() {
+  if (!assembler_in_double) assembler_in_double.emplace(model.mesh.tets, matrix.pattern);
+  return *assembler_in_double;
+}
+
+const FloatAssembler& Simulator::Parts::float_assembler() {
+  if (!assembler_in_float)
+    assembler_in_float.emplace(model.mesh.tets, body.node_elements, multigrid.float_matrix().pattern,
+                               multigrid.row_of_node());
+  return *assembler_in_float;
 }
 
 std::vector<ActivePull> Simulator::Parts::pulls_at(double frame) const {

@@ -65,7 +65,9 @@ StaticSolver::StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t
       held_pieces_(held_pieces),
       pulls_(pulls),
       shares_(parts.body.tets.size(), 1.0),
-      node_terms_(rigid_shifts(parts, held)) {}
+      node_terms_(rigid_shifts(parts, held)) {
+  parts_.stresses.resize(parts.body.tets.size());
+}
 
 void StaticSolver::evaluate(StaticState& state) {
   {
@@ -124,7 +126,7 @@ void StaticSolver::assemble(const StaticState& state, Curvature curvature) {
   if (parts_.params.rotation == RotationMethod::None) curvature = Curvature::None;
   find_stiffness_terms(parts_.body, state.positions, state.rotations, shares_, curvature, parts_.terms, {},
                        parts_.threads);
-  parts_.assembler.assemble(parts_.terms, node_terms_, parts_.matrix, parts_.threads);
+  parts_.assembler().assemble(parts_.terms, node_terms_, parts_.matrix, parts_.threads);
   for (const ActivePull& pull : pulls_) add_pull_stiffness(pull, state.positions, 1.0, parts_.matrix);
 }
 

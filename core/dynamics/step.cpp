@@ -27,9 +27,10 @@ void assemble_step(Simulator::Parts& parts, StepWork& work) {
   const double h = work.h;
   std::vector<double> shares(parts.body.tets.size());
   for (std::size_t e = 0; e < shares.size(); ++e) shares[e] = h * h + h * parts.model.materials[e].damping_stiffness;
+  parts.stresses.resize(shares.size());
   find_stiffness_terms(parts.body, parts.state.positions, work.rotations, shares, Curvature::None, parts.terms,
                        parts.stresses, parts.threads);
-  parts.assembler.assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
+  parts.assembler().assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
   for (const ActivePull& pull : work.pulls) add_pull_stiffness(pull, parts.state.positions, h * h, parts.matrix);
 }
 

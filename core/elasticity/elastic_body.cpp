@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 
+#include "core/base/check.h"
 #include "core/elasticity/element_rotation.h"
 #include "core/elasticity/rotation_rivals.h"
 
@@ -65,6 +66,7 @@ std::int64_t count_flat(const ElasticBody& body, std::span<const Vec3> positions
 }  // namespace
 
 NodeElements gather_node_elements(const std::vector<Tet>& tets, Index nodes) {
+  CHECK(tets.size() < (std::size_t{1} << 30));
   NodeElements result;
   result.offsets.assign(static_cast<std::size_t>(nodes) + 1, 0);
   for (const Tet& tet : tets)
@@ -75,7 +77,7 @@ NodeElements gather_node_elements(const std::vector<Tet>& tets, Index nodes) {
   for (std::size_t e = 0; e < tets.size(); ++e)
     for (std::size_t k = 0; k < 4; ++k)
       result.entries[static_cast<std::size_t>(next[static_cast<std::size_t>(tets[e][k])]++)] =
-          static_cast<std::int64_t>(4 * e + k);
+          static_cast<std::uint32_t>(4 * e + k);
   return result;
 }
 
@@ -142,8 +144,8 @@ void gather_forces(const ElasticBody& body, std::span<const Mat3> stresses, std:
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       Vec3 force = Vec3::Zero();
       for (std::int64_t k = gather.offsets[i]; k < gather.offsets[i + 1]; ++k) {
-        const std::int64_t entry = gather.entries[static_cast<std::size_t>(k)];
-        const auto e = static_cast<std::size_t>(entry / 4);
+        const std::uint32_t entry = gather.entries[static_cast<std::size_t>(k)];
+        const std::size_t e = entry / 4;
         force -= stresses[e] * body.shapes[e].gradients.col(entry % 4);
       }
       forces[i] = force;

@@ -36,7 +36,7 @@ enum class Dilatation { Capped, Linear };
 /// each entry is 4 * element + position of the node in it.
 struct NodeElements {
   std::vector<std::int64_t> offsets;
-  std::vector<std::int64_t> entries;
+  std::vector<std::uint32_t> entries;
 };
 
 NodeElements gather_node_elements(const std::vector<Tet>& tets, Index nodes);

@@ -17,8 +17,8 @@ template <typename Visit>
 void for_ring(const ElasticBody& body, Index a, Index b, const Visit& visit) {
   const NodeElements& at = body.node_elements;
   for (std::int64_t k = at.offsets[static_cast<std::size_t>(a)]; k < at.offsets[static_cast<std::size_t>(a) + 1]; ++k) {
-    const std::int64_t entry = at.entries[static_cast<std::size_t>(k)];
-    const Tet& tet = body.tets[static_cast<std::size_t>(entry / 4)];
+    const std::uint32_t entry = at.entries[static_cast<std::size_t>(k)];
+    const Tet& tet = body.tets[entry / 4];
     const auto found = std::find(tet.begin(), tet.end(), b);
     if (found != tet.end())
       visit(static_cast<Index>(entry / 4), static_cast<int>(entry % 4), static_cast<int>(found - tet.begin()));
