@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -119,6 +120,28 @@ TEST(FindEquilibrium, PassesThePatchTest) {
     ASSERT_TRUE(report.ok()) << report.culprit;
     EXPECT_LT(largest_distance(bench.simulator.state().positions, transformed(affine, model.mesh.nodes)), 1e-11);
   }
+}
+
+TEST(FindEquilibrium, PassesThePatchTestToRoundOffOnAnIrregularMesh) {
+  TetMesh mesh = testing::kuhn_bar({5, 5, 5}, Vec3(0.5, 0.45, 0.4));
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-0.02, 0.02);
+  for (Vec3& node : mesh.nodes) node += Vec3(uniform(random), uniform(random), uniform(random));
+  BodyModel model = body_model(mesh, rubber(0.4));
+  model.gravity.setZero();
+  Transform affine;
+  affine.rotate = Vec3(0.4, -0.2, 1.1);
+  affine.scale = Vec3(1.1, 0.95, 1.05);
+  std::vector<Index> boundary;
+  for (const Triangle& face : boundary_faces(mesh)) boundary.insert(boundary.end(), face.begin(), face.end());
+  model.pins = {testing::make_pin(boundary, affine)};
+  ASSERT_LT(NodePins(model.pins, model.embedding, mesh).at(1).count, static_cast<Index>(mesh.nodes.size()));
+  SolverParams params = exact_params();
+  params.force_tolerance = 1e-15;
+  Bench bench(model, params);
+  const StepReport report = bench.simulator.find_equilibrium(1);
+  ASSERT_TRUE(report.ok()) << report.culprit;
+  EXPECT_LT(largest_distance(bench.simulator.state().positions, transformed(affine, mesh.nodes)), 1e-12);
 }
 
 TEST(FindEquilibrium, StretchesStiffAndSoftHalvesInSeriesByTheirStiffness) {
