@@ -110,7 +110,7 @@ SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work) {
     const ScopedStage stage(parts.times, "simulate/assemble");
     find_residual(parts, work, work.velocities, {}, work.right_side);
     BlockMatrixf& matrix = parts.multigrid.float_matrix();
-    parts.float_assembler.assemble(parts.step_terms, work.node_terms, matrix, parts.threads);
+    parts.float_assembler().assemble(parts.step_terms, work.node_terms, matrix, parts.threads);
     for (const ActivePull& pull : work.pulls)
       add_pull_stiffness(pull, work.positions, seconds.velocity * seconds.position, parts.multigrid);
   }

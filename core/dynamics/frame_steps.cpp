@@ -1,5 +1,6 @@
 #include "core/dynamics/frame_steps.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace softreel {
@@ -29,6 +30,7 @@ void count(FrameReport& total, const StepReport& step) {
   total.linear_iterations += step.solve.iterations;
   total.nonlinear_iterations += step.nonlinear_iterations;
   if (!step.ok()) return;
+  total.recovering_elements = std::max(total.recovering_elements, step.recovery.elements);
   total.steps += step.rejected ? 0 : 1;
   total.steps_at_rest += step.at_rest ? 1 : 0;
   total.steps_rejected += step.rejected ? 1 : 0;

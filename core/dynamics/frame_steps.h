@@ -24,7 +24,8 @@ struct FrameReport {
   int steps_at_rest = 0;   ///< of these, not solved
   int steps_rejected = 0;  ///< solved in vain
   int linear_iterations = 0, nonlinear_iterations = 0;
-  bool too_short = false;  ///< the shortest step's error was above SolverParams::step_error
+  Index recovering_elements = 0;  ///< most in a step
+  bool too_short = false;         ///< the shortest step's error was above SolverParams::step_error
   bool ok() const { return last.ok() && !too_short; }
 };
 

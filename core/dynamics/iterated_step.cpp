@@ -23,7 +23,7 @@ BlockMatrixd assemble_damping(Simulator::Parts& parts, const StepWork& work) {
   std::vector<Quaternion> rotations = parts.state.rotations;
   find_rotations(parts.body, parts.params.rotation, positions, rotations, parts.threads);
   find_stiffness_terms(parts.body, positions, rotations, shares, Curvature::None, parts.terms, {}, parts.threads);
-  parts.assembler.assemble(parts.terms, std::vector<double>(parts.nodes(), 0.0), damping, parts.threads);
+  parts.assembler().assemble(parts.terms, std::vector<double>(parts.nodes(), 0.0), damping, parts.threads);
   return damping;
 }
 

@@ -24,6 +24,7 @@ bool is_at_rest(Simulator::Parts& parts, const PinnedNodes& pinned, const std::v
                 double seconds) {
   const double tolerance = parts.params.rest_tolerance;
   const SimulationState& state = parts.state;
+  if (!state.troubles.empty()) return false;  // recovery counts its steps
   if (tolerance == 0 || !is_still(state, tolerance * parts.body_size / seconds)) return false;
   if (!pins_stay(pinned, state.positions)) return false;
   const std::vector<std::uint8_t> held_pieces = parts.held_pieces(pinned, pulls);

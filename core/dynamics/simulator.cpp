@@ -59,17 +59,27 @@ Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params,
       pins(model.pins, model.embedding, model.mesh),
       pieces(find_pieces(model.mesh.tets, model.mesh.nodes.size())),
       matrix{stiffness_pattern(model.mesh.tets, static_cast<Index>(model.mesh.nodes.size())), {}},
-      assembler(model.mesh.tets, matrix.pattern),
       multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern, params.multigrid, threads),
-      float_assembler(model.mesh.tets, body.node_elements, multigrid.float_matrix().pattern, multigrid.row_of_node()),
-      body_size(box_diagonal(model.mesh.nodes)),
-      stresses(model.mesh.tets.size()) {
+      body_size(box_diagonal(model.mesh.nodes)) {
   CHECK(params.newmark.is_stable());
   if (const std::string conflict = pins.find_conflict(); !conflict.empty()) throw input_error(conflict);
+  damping_stiffness.reserve(model.materials.size());
   for (const ElementMaterial& material : model.materials) damping_stiffness.push_back(material.damping_stiffness);
   state.positions = model.mesh.nodes;
   state.velocities.assign(model.mesh.nodes.size(), Vec3::Zero());
   state.rotations.assign(model.mesh.tets.size(), Quaternion::Identity());
+}
+
+const StiffnessAssembler& Simulator::Parts::assembler() {
+  if (!assembler_in_double) assembler_in_double.emplace(model.mesh.tets, matrix.pattern);
+  return *assembler_in_double;
+}
+
+const FloatAssembler& Simulator::Parts::float_assembler() {
+  if (!assembler_in_float)
+    assembler_in_float.emplace(model.mesh.tets, body.node_elements, multigrid.float_matrix().pattern,
+                               multigrid.row_of_node());
+  return *assembler_in_float;
 }
 
 std::vector<ActivePull> Simulator::Parts::pulls_at(double frame) const {
@@ -146,6 +156,7 @@ void Simulator::set_state(SimulationState state) {
   CHECK(state.rotations.size() == parts_->body.tets.size());
   for (const auto* memory : {&state.previous_positions, &state.previous_velocities, &state.accelerations})
     if (!memory->empty()) CHECK(memory->size() == parts_->nodes());
+  CHECK((state.troubles.empty() || state.troubles.size() == parts_->body.tets.size()));
   parts_->state = std::move(state);
   parts_->coarse_lag.usable = false;
 }

@@ -11,6 +11,7 @@
 #include "core/base/timer.h"
 #include "core/base/types.h"
 #include "core/constraints/constraints.h"
+#include "core/dynamics/recovery.h"
 #include "core/elasticity/elastic_body.h"
 #include "core/elasticity/material.h"
 #include "core/multigrid/multigrid.h"
@@ -43,6 +44,7 @@ struct SolverParams {
   Integrator integrator = Integrator::Euler;
   NewmarkParams newmark;
   Linearize linearize = Linearize::Auto;
+  bool recovery = true;     ///< of elements that stay inverted in dynamics; not with rotation None
   int substeps = 1;         ///< per frame; with step_error, the fewest
   double step_error = 0;    ///< largest estimated error of a step over the body's size; 0: steps are fixed
   int max_substeps = 1024;  ///< per frame, with step_error
@@ -82,6 +84,7 @@ struct SimulationState {
   std::vector<Vec3> accelerations{};        ///< Newmark: nodes x 3, m/s^2
   double previous_error = 0;                ///< error control: of the last step, over the body's size
   double previous_seconds = 0;              ///< BDF2, Newmark, error control: length of the last step
+  ElementTroubles troubles = {};            ///< of recovery: empty while all is well
 };
 
 /// What a step did. If it could not be solved, `culprit` names the element (with its centroid) or constraint to blame.
@@ -92,6 +95,7 @@ struct StepReport {
   bool rejected = false;  ///< the error is above the limit: the state was left as it was
   bool at_rest = false;   ///< nothing was to be done: the state was left as it was
   std::string culprit;
+  RecoveryReport recovery = {};
   bool ok() const { return solve.ok(); }
 };
 

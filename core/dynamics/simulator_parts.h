@@ -1,6 +1,7 @@
 /// What the Simulator is made of; shared by its source files only.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,9 +48,7 @@ struct Simulator::Parts {
   NodePins pins;
   Pieces pieces;
   BlockMatrixd matrix;
-  StiffnessAssembler assembler;
   Multigrid multigrid;
-  FloatAssembler float_assembler;
   std::vector<double> damping_stiffness;  ///< per element, s
   StepSeconds float_seconds;              ///< those that float_ratio was found for
   double float_ratio = 0;                 ///< see suits_float
@@ -58,10 +57,17 @@ struct Simulator::Parts {
 
   CoarseLag coarse_lag;
 
+  // Made when first asked for: steps in float need none of what steps in double and statics do, which is a sixth of all
+  // the memory of a body, and the other way round.
+  std::optional<StiffnessAssembler> assembler_in_double;
+  std::optional<FloatAssembler> assembler_in_float;
+  const StiffnessAssembler& assembler();
+  const FloatAssembler& float_assembler();
+
   // Reused from step to step; no result depends on what they held.
   StiffnessTerms terms;
   StepTerms step_terms;
-  std::vector<Mat3> stresses;
+  std::vector<Mat3> stresses;  ///< per element; empty until statics or a step in double
 
   std::size_t nodes() const { return model.mesh.nodes.size(); }
 

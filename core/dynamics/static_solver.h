@@ -45,6 +45,8 @@ class StaticSolver {
                            int max_iterations, std::span<Vec3> change);
   void precondition(const StaticState& state);
   bool solve_direction(const StaticState& state, double tolerance, int max_iterations, std::vector<Vec3>& direction);
+  std::vector<Vec3> forces_at(std::vector<Vec3> positions, std::vector<Quaternion> rotations);
+  bool find_direction_without_energy(const StaticState& state, std::vector<Vec3>& direction);
   bool find_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction);
   StaticState moved(const StaticState& state, std::span<const Vec3> direction, double step);
   bool search_line(StaticState& state, std::span<const Vec3> direction);

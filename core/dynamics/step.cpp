@@ -32,7 +32,7 @@ void assemble_step(Simulator::Parts& parts, StepWork& work) {
     shares[e] = seconds.velocity * (seconds.position + parts.damping_stiffness[e]);
   find_stiffness_terms(parts.body, work.positions, work.rotations, shares, Curvature::None, parts.terms, {},
                        parts.threads);
-  parts.assembler.assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
+  parts.assembler().assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
   for (const ActivePull& pull : work.pulls)
     add_pull_stiffness(pull, work.positions, seconds.velocity * seconds.position, parts.matrix);
 }
@@ -77,10 +77,6 @@ SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
 }
 
 SolveReport solve_once(Simulator::Parts& parts, StepWork& work) {
-  {
-    const ScopedStage stage(parts.times, "simulate/rotate");
-    find_rotations(parts.body, parts.params.rotation, work.positions, work.rotations, parts.threads);
-  }
   const double t = work.step.seconds.velocity;
   work.node_terms.resize(parts.nodes());
   for (std::size_t i = 0; i < work.node_terms.size(); ++i)
@@ -147,8 +143,21 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
       next.positions[i] += work.step.seconds.position * next.velocities[i];
     }
   }
+  next.troubles = std::move(work.troubles);
   remember(parts.params, work.step, parts.state, work.pinned.held, work.pinned.targets, next);
   return next;
+}
+
+/// Rotations shared by recovery have no energy to iterate on: then even an iterated step is one solve.
+StepReport solve_step(Simulator::Parts& parts, double frame, StepWork& work) {
+  const RecoveryReport recovery = find_step_rotations(parts, frame, work);
+  StepReport report;
+  if (linearization(parts.params) == Linearize::Iterated && recovery.elements == 0)
+    report = iterate_step(parts, work);
+  else
+    report.solve = solve_once(parts, work);
+  report.recovery = recovery;
+  return report;
 }
 
 /// Makes the step's end the state, unless it is not finite or its error is too great.
@@ -209,7 +218,7 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work) {
 }
 
 StepReport Simulator::Parts::step(double frame, double seconds, double error_limit) {
-  StepWork work{{}, pins.at(frame), pulls_at(frame), {}, state.rotations, {}, {}, {}, {}, {}};
+  StepWork work{{}, pins.at(frame), pulls_at(frame), {}, state.rotations, {}, {}, {}, {}, {}, state.troubles};
   StepReport report;
   if (!work.pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
@@ -226,10 +235,7 @@ StepReport Simulator::Parts::step(double frame, double seconds, double error_lim
   const bool first = lacks_accelerations(params, state);
   if (first) state.accelerations = find_accelerations(*this, work.pinned, work.pulls);
   begin_step(*this, work, seconds);
-  if (linearization(params) == Linearize::Iterated)
-    report = iterate_step(*this, work);
-  else
-    report.solve = solve_once(*this, work);
+  report = solve_step(*this, frame, work);
   if (ends_frame) coarse_lag.usable = false;
   if (report.ok()) accept_or_reject(*this, work, error_limit, report);
   if (first && (!report.ok() || report.rejected)) state.accelerations.clear();

@@ -22,12 +22,15 @@ struct StepWork {
   std::vector<Vec3> velocities;       ///< the integrator's base; of held nodes, those at the end
   std::vector<double> node_terms;     ///< mass part of S
   std::vector<Vec3> right_side, change;
+  ElementTroubles troubles = {};  ///< in: of the step before; find_step_rotations counts this one
 };
 
 /// t f + M (base velocities) - (M + t C) v - t K (seconds.position v + offsets) for v = velocities + change and t =
 /// seconds.velocity; zero on held nodes. change: empty if it is zero; end_velocities: v. On the way parts.step_terms.
 void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities,
                    std::span<const Vec3> change, std::span<Vec3> residual);
+/// work.rotations at work.positions, shared where recovery acts; says in the log where it begins and ends.
+RecoveryReport find_step_rotations(Simulator::Parts& parts, double frame, StepWork& work);
 
 bool all_finite(std::span<const Vec3> vectors);
 

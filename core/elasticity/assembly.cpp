@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/base/check.h"
 
@@ -90,6 +91,7 @@ void find_stiffness_terms(const ElasticBody& body, std::span<const Vec3> positio
 
 StiffnessAssembler::StiffnessAssembler(const std::vector<Tet>& tets, const BlockPattern& pattern) {
   CHECK(tets.size() < (std::size_t{1} << 28));
+  CHECK(pattern.blocks() < std::int64_t{std::numeric_limits<std::uint32_t>::max()});
   std::vector<std::int64_t> counts(static_cast<std::size_t>(pattern.blocks()) + 1, 0);
   const auto for_upper = [&](auto&& visit) {
     for (std::size_t e = 0; e < tets.size(); ++e)
@@ -111,18 +113,22 @@ StiffnessAssembler::StiffnessAssembler(const std::vector<Tet>& tets, const Block
     for (std::int64_t b = pattern.row_offsets[r]; b < pattern.row_offsets[r + 1]; ++b) {
       const auto at = static_cast<std::size_t>(b);
       if (pattern.column_indices[at] < row) continue;
-      blocks_.push_back({b, pattern.find(pattern.column_indices[at], row), counts[at], counts[at + 1]});
+      blocks_.push_back({static_cast<std::uint32_t>(b),
+                         static_cast<std::uint32_t>(pattern.find(pattern.column_indices[at], row)),
+                         static_cast<std::uint32_t>(counts[at])});
     }
     row_starts_.push_back(static_cast<std::int64_t>(blocks_.size()));
   }
+  blocks_.push_back({0, 0, static_cast<std::uint32_t>(references_.size())});
+  blocks_.shrink_to_fit();
 }
 
 template <bool kUniform, bool kCurved>
-Mat3 StiffnessAssembler::gather_block(const StiffnessTerms& terms, const UpperBlock& block, double node_term) const {
+Mat3 StiffnessAssembler::gather_block(const StiffnessTerms& terms, const UpperBlock* block, double node_term) const {
   std::array<Row, 3> product{Row::Zero(), Row::Zero(), Row::Zero()}, weighted = product;
   Mat3 curved = Mat3::Zero();
-  for (std::int64_t r = block.first; r < block.last; ++r) {
-    const std::uint32_t reference = references_[static_cast<std::size_t>(r)];
+  for (std::uint32_t r = block[0].first; r < block[1].first; ++r) {
+    const std::uint32_t reference = references_[r];
     const std::size_t e = reference >> 4;
     const double* const gi = &terms.gradients[4 * (reference >> 2)];
     const double* const gj = &terms.gradients[16 * e + 4 * (reference & 3)];
@@ -149,11 +155,11 @@ void StiffnessAssembler::gather_rows(const StiffnessTerms& terms, std::span<cons
     for (std::int64_t k = row_starts_[row]; k < row_starts_[row + 1]; ++k) {
       const UpperBlock& block = blocks_[static_cast<std::size_t>(k)];
       if (block.position == block.mirror) {
-        const Mat3 value = gather_block<kUniform, kCurved>(terms, block, node_terms[row]);
+        const Mat3 value = gather_block<kUniform, kCurved>(terms, &block, node_terms[row]);
         // Symmetric to the last bit, whatever the order of the sums.
         store_block(0.5 * (value + value.transpose()), matrix.block(block.position));
       } else {
-        const Mat3 value = gather_block<kUniform, kCurved>(terms, block, 0.0);
+        const Mat3 value = gather_block<kUniform, kCurved>(terms, &block, 0.0);
         store_block(value, matrix.block(block.position));
         store_block(value.transpose(), matrix.block(block.mirror));
       }

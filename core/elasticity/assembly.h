@@ -45,21 +45,21 @@ class StiffnessAssembler {
                 const Threads& threads) const;
 
  private:
-  /// A block of the upper triangle, its mirror image, and its elements.
+  /// A block of the upper triangle and its mirror image, equal on the diagonal; its references are those from `first`
+  /// to the next block's.
   struct UpperBlock {
-    std::int64_t position, mirror;  ///< equal on the diagonal
-    std::int64_t first, last;       ///< range of references_
+    std::uint32_t position, mirror, first;
   };
 
   /// uniform: the ratios are; curved: there are curvatures.
   template <bool kUniform, bool kCurved>
-  Mat3 gather_block(const StiffnessTerms& terms, const UpperBlock& block, double node_term) const;
+  Mat3 gather_block(const StiffnessTerms& terms, const UpperBlock* block, double node_term) const;
   template <bool kUniform, bool kCurved>
   void gather_rows(const StiffnessTerms& terms, std::span<const double> node_terms, BlockMatrixd& matrix,
                    std::int64_t begin, std::int64_t end) const;
 
   std::vector<std::int64_t> row_starts_;   ///< upper blocks of row i: [row_starts_[i], row_starts_[i + 1])
-  std::vector<UpperBlock> blocks_;         ///< by rows, the diagonal first
+  std::vector<UpperBlock> blocks_;         ///< by rows, the diagonal first; one more as the end
   std::vector<std::uint32_t> references_;  ///< 16 * element + 4 * local row + local column, ascending per block
 };
 

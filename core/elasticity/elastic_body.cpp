@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <Eigen/LU>
+
+#include "core/base/check.h"
 #include "core/elasticity/element_rotation.h"
 #include "core/elasticity/rotation_rivals.h"
 
@@ -37,9 +40,33 @@ void find_batch(const ElasticBody& body, std::span<const Vec3> positions, std::s
   }
 }
 
+std::int64_t find_all_consistent(const ElasticBody& body, std::span<const Vec3> positions,
+                                 std::span<Quaternion> rotations, const Threads& threads) {
+  constexpr std::int64_t kBatchGrain = kElementGrain / kElementLanes;
+  const std::span<const ElementBatch> batches = body.batches;
+  return static_cast<std::int64_t>(threads.sum_chunks(
+      static_cast<std::int64_t>(batches.size()), kBatchGrain, [&](std::int64_t begin, std::int64_t end) {
+        return static_cast<double>(find_consistent_rotations(
+            batches, positions, rotations, static_cast<std::size_t>(begin), static_cast<std::size_t>(end)));
+      }));
+}
+
+std::int64_t count_flat(const ElasticBody& body, std::span<const Vec3> positions, const Threads& threads) {
+  return static_cast<std::int64_t>(threads.sum_chunks(
+      static_cast<std::int64_t>(body.tets.size()), kElementGrain, [&](std::int64_t begin, std::int64_t end) {
+        double flat = 0;
+        for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e)
+          if (deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], positions)).determinant() <
+              kFlatVolume)
+            ++flat;
+        return flat;
+      }));
+}
+
 }  // namespace
 
 NodeElements gather_node_elements(const std::vector<Tet>& tets, Index nodes) {
+  CHECK(tets.size() < (std::size_t{1} << 30));
   NodeElements result;
   result.offsets.assign(static_cast<std::size_t>(nodes) + 1, 0);
   for (const Tet& tet : tets)
@@ -50,7 +77,7 @@ NodeElements gather_node_elements(const std::vector<Tet>& tets, Index nodes) {
   for (std::size_t e = 0; e < tets.size(); ++e)
     for (std::size_t k = 0; k < 4; ++k)
       result.entries[static_cast<std::size_t>(next[static_cast<std::size_t>(tets[e][k])]++)] =
-          static_cast<std::int64_t>(4 * e + k);
+          static_cast<std::uint32_t>(4 * e + k);
   return result;
 }
 
@@ -77,13 +104,7 @@ void find_rotations(const ElasticBody& body, RotationMethod method, std::span<co
     return;
   }
   if (method == RotationMethod::Consistent) {
-    constexpr std::int64_t kBatchGrain = kElementGrain / kElementLanes;
-    const std::span<const ElementBatch> batches = body.batches;
-    threads.for_chunks(static_cast<std::int64_t>(batches.size()), kBatchGrain,
-                       [&](std::int64_t begin, std::int64_t end) {
-                         find_consistent_rotations(batches, positions, rotations, static_cast<std::size_t>(begin),
-                                                   static_cast<std::size_t>(end));
-                       });
+    find_all_consistent(body, positions, rotations, threads);
     return;
   }
   if (method != RotationMethod::Energy) {
@@ -96,6 +117,13 @@ void find_rotations(const ElasticBody& body, RotationMethod method, std::span<co
                          find_batch(body, positions, rotations, static_cast<std::size_t>(e),
                                     static_cast<std::size_t>(std::min<std::int64_t>(e + kRotationLanes, end)));
                      });
+}
+
+std::int64_t find_rotations_and_flat(const ElasticBody& body, RotationMethod method, std::span<const Vec3> positions,
+                                     std::span<Quaternion> rotations, const Threads& threads) {
+  if (method == RotationMethod::Consistent) return find_all_consistent(body, positions, rotations, threads);
+  find_rotations(body, method, positions, rotations, threads);
+  return count_flat(body, positions, threads);
 }
 
 void find_stresses(const ElasticBody& body, std::span<const Vec3> positions, std::span<const Quaternion> rotations,
@@ -116,8 +144,8 @@ void gather_forces(const ElasticBody& body, std::span<const Mat3> stresses, std:
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       Vec3 force = Vec3::Zero();
       for (std::int64_t k = gather.offsets[i]; k < gather.offsets[i + 1]; ++k) {
-        const std::int64_t entry = gather.entries[static_cast<std::size_t>(k)];
-        const auto e = static_cast<std::size_t>(entry / 4);
+        const std::uint32_t entry = gather.entries[static_cast<std::size_t>(k)];
+        const std::size_t e = entry / 4;
         force -= stresses[e] * body.shapes[e].gradients.col(entry % 4);
       }
       forces[i] = force;

@@ -36,7 +36,7 @@ enum class Dilatation { Capped, Linear };
 /// each entry is 4 * element + position of the node in it.
 struct NodeElements {
   std::vector<std::int64_t> offsets;
-  std::vector<std::int64_t> entries;
+  std::vector<std::uint32_t> entries;
 };
 
 NodeElements gather_node_elements(const std::vector<Tet>& tets, Index nodes);
@@ -64,6 +64,11 @@ inline TetNodes nodes_of(const Tet& tet, std::span<const Vec3> positions) {
 /// Extracts every element's rotation at `positions` (stage "rotate"). rotations: guesses in, results out.
 void find_rotations(const ElasticBody& body, RotationMethod method, std::span<const Vec3> positions,
                     std::span<Quaternion> rotations, const Threads& threads);
+
+/// find_rotations; returns how many elements have det F below kFlatVolume. The consistent method has that at hand, the
+/// others look in a pass of their own.
+std::int64_t find_rotations_and_flat(const ElasticBody& body, RotationMethod method, std::span<const Vec3> positions,
+                                     std::span<Quaternion> rotations, const Threads& threads);
 
 /// Weighted first Piola stress V Q sigma of each element, N m.
 void find_stresses(const ElasticBody& body, std::span<const Vec3> positions, std::span<const Quaternion> rotations,

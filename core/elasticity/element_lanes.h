@@ -25,6 +25,10 @@ struct alignas(32) ElementBatch {
   Index nodes[4][kElementLanes];
 };
 
+/// Share of its rest volume below which an element is flat: inverted, or so near to it that the next step may invert
+/// it.
+inline constexpr double kFlatVolume = 0.01;
+
 std::vector<ElementBatch> make_element_batches(const std::vector<Tet>& tets, const std::vector<ElementShape>& shapes,
                                                const std::vector<ElasticLaw>& laws);
 
@@ -35,8 +39,9 @@ std::vector<ElementBatch> make_element_batches(const std::vector<Tet>& tets, con
 /// matrix is positive definite the point is the greatest maximum of tr(Q^T F): the same certificate as that of
 /// Davenport's matrix, in three dimensions. The third derivative vanishes there, so convergence is cubic; from the
 /// rotation of the step before two turns do. Lanes that are not certified after a few go to find_rotation.
-/// rotations: per element, guesses in, results out.
-void find_consistent_rotations(std::span<const ElementBatch> batches, std::span<const Vec3> positions,
-                               std::span<Quaternion> rotations, std::size_t begin, std::size_t end);
+/// rotations: per element, guesses in, results out. Returns how many elements have det F below kFlatVolume, as F is at
+/// hand.
+std::int64_t find_consistent_rotations(std::span<const ElementBatch> batches, std::span<const Vec3> positions,
+                                       std::span<Quaternion> rotations, std::size_t begin, std::size_t end);
 
 }  // namespace softreel

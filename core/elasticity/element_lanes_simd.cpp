@@ -57,6 +57,17 @@ constexpr double kSmallestDeterminant = 1e-3;
   return good;
 }
 
+/// How many of the first `count` lanes have det F below kFlatVolume.
+[[gnu::always_inline]] inline std::int64_t count_flat(const Matrix& F, std::size_t count) {
+  const Lanes volume =
+      F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+  const Mask flat = volume < Lanes(kFlatVolume);
+  if (stdx::none_of(flat)) return 0;
+  std::int64_t found = 0;
+  for (std::size_t lane = 0; lane < count; ++lane) found += flat[lane] ? 1 : 0;
+  return found;
+}
+
 Mat3 lane_of(const Matrix& F, std::size_t lane) {
   Mat3 A;
   for (int r = 0; r < 3; ++r)
@@ -66,11 +77,13 @@ Mat3 lane_of(const Matrix& F, std::size_t lane) {
 
 }  // namespace
 
-void find_consistent_rotations(std::span<const ElementBatch> batches, std::span<const Vec3> positions,
-                               std::span<Quaternion> rotations, std::size_t begin, std::size_t end) {
+std::int64_t find_consistent_rotations(std::span<const ElementBatch> batches, std::span<const Vec3> positions,
+                                       std::span<Quaternion> rotations, std::size_t begin, std::size_t end) {
+  std::int64_t flat = 0;
   for (std::size_t b = begin; b < end; ++b) {
     const std::size_t first = kElementLanes * b, count = std::min(kElementLanes, rotations.size() - first);
     const Matrix F = detail::gradient<Lanes>(batches[b], positions, stdx::vector_aligned);
+    flat += count_flat(F, count);
     Quad q = detail::load_rotations<Lanes>(rotations, first);
     const Mask good = find_nearest(F, q);
     alignas(32) double found[4][kElementLanes];
@@ -81,6 +94,7 @@ void find_consistent_rotations(std::span<const ElementBatch> batches, std::span<
                             : find_rotation(lane_of(F, lane), rotation);
     }
   }
+  return flat;
 }
 
 }  // namespace softreel

@@ -92,8 +92,8 @@ FloatAssembler::FloatAssembler(const std::vector<Tet>& tets, const NodeElements&
     diagonals_.push_back(position(node, node));
     row.clear();
     for (std::int64_t k = node_elements.offsets[i]; k < node_elements.offsets[i + 1]; ++k) {
-      const std::int64_t entry = node_elements.entries[static_cast<std::size_t>(k)];
-      const Tet& tet = tets[static_cast<std::size_t>(entry / 4)];
+      const std::uint32_t entry = node_elements.entries[static_cast<std::size_t>(k)];
+      const Tet& tet = tets[entry / 4];
       for (std::size_t j = 0; j < 4; ++j)
         if (tet[j] > node)
           row.emplace_back(tet[j], static_cast<std::uint32_t>(4 * static_cast<std::size_t>(entry) + j));
@@ -110,6 +110,8 @@ FloatAssembler::FloatAssembler(const std::vector<Tet>& tets, const NodeElements&
     row_starts_.push_back(static_cast<std::int64_t>(blocks_.size()));
   }
   blocks_.push_back({0, 0, static_cast<std::uint32_t>(references_.size())});
+  blocks_.shrink_to_fit();
+  references_.shrink_to_fit();
 }
 
 template <bool kUniform>
@@ -120,7 +122,7 @@ void FloatAssembler::gather_rows(const StepTerms& terms, std::span<const double>
   for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
     Products<kUniform> own;
     for (std::int64_t k = node_elements_.offsets[i]; k < node_elements_.offsets[i + 1]; ++k) {
-      const float* const g = gradients + 4 * node_elements_.entries[static_cast<std::size_t>(k)];
+      const float* const g = gradients + std::size_t{4} * node_elements_.entries[static_cast<std::size_t>(k)];
       own.add(g, g);
     }
     // A sum of g g^T is symmetric to the last bit as it is.

@@ -60,7 +60,7 @@ Quaternion smoothed_rotation(const ElasticBody& body, std::span<const Quaternion
   for (std::size_t k = 0; k < 4; ++k) {
     const auto node = static_cast<std::size_t>(body.tets[e][k]);
     for (std::int64_t at = gather.offsets[node]; at < gather.offsets[node + 1]; ++at) {
-      const auto other = static_cast<std::size_t>(gather.entries[static_cast<std::size_t>(at)] / 4);
+      const std::size_t other = gather.entries[static_cast<std::size_t>(at)] / 4;
       if (has_earlier_node(body.tets[other], body.tets[e], k)) continue;  // it was added there
       sum += body.shapes[other].volume * nearest_sign(rotations[other], own).coeffs();
     }

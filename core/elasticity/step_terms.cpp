@@ -29,7 +29,8 @@ void gather_step_forces(const NodeElements& node_elements, const StepTerms& term
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       Lanes sum = Lanes::Zero();
       for (std::int64_t k = node_elements.offsets[i]; k < node_elements.offsets[i + 1]; ++k)
-        sum += Eigen::Map<const Lanes>(terms.forces.data() + 3 * node_elements.entries[static_cast<std::size_t>(k)]);
+        sum += Eigen::Map<const Lanes>(terms.forces.data() +
+                                       std::size_t{3} * node_elements.entries[static_cast<std::size_t>(k)]);
       forces[i] = sum.head<3>();
     }
   });

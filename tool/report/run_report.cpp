@@ -1,5 +1,7 @@
 #include "tool/report/run_report.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -73,6 +75,27 @@ std::string simulation_line(const RunReport& report) {
   return line + "\n";
 }
 
+/// Bodies whose recovery was at work, with the frames and the most elements that it took.
+std::string recovery_lines(const SimulationCounts& counts) {
+  struct Span {
+    int first, last, frames;
+    Index elements;
+  };
+  std::map<std::string, Span> bodies;
+  for (const FrameRecovery& recovery : counts.recoveries) {
+    Span& span = bodies.try_emplace(recovery.body, Span{recovery.frame, recovery.frame, 0, 0}).first->second;
+    span.first = std::min(span.first, recovery.frame);
+    span.last = std::max(span.last, recovery.frame);
+    span.frames += 1;
+    span.elements = std::max(span.elements, recovery.elements);
+  }
+  std::string lines;
+  for (const auto& [body, span] : bodies)
+    lines += fmt::format("  recovery: {} in {} frames between {} and {}, at most {} tetrahedra\n", body, span.frames,
+                         span.first, span.last, span.elements);
+  return lines;
+}
+
 std::string picture_line(const PictureCounts& counts) {
   std::string line;
   const auto add = [&](int number, const char* what) {
@@ -119,6 +142,7 @@ std::string to_text(const RunReport& report) {
     text += "\n";
   }
   text += simulation_line(report);
+  text += recovery_lines(report.simulation);
   text += picture_line(report.pictures);
   if (report.files_written + report.files_kept > 0)
     text += fmt::format("  files: {} written, {} there already\n", report.files_written, report.files_kept);
@@ -165,6 +189,10 @@ std::string to_json(const RunReport& report) {
                         {"steps_rejected", simulation.work.steps_rejected},
                         {"frames_unchanged", simulation.work.frames_unchanged},
                         {"saved_seconds", simulation.saved_seconds}};
+  json["simulation"]["recoveries"] = nlohmann::ordered_json::array();
+  for (const FrameRecovery& recovery : simulation.recoveries)
+    json["simulation"]["recoveries"].push_back(
+        {{"body", recovery.body}, {"frame", recovery.frame}, {"elements", recovery.elements}});
   const PictureCounts& pictures = report.pictures;
   json["pictures"] = {{"traced", pictures.traced},       {"linked", pictures.linked},
                       {"developed", pictures.developed}, {"recalled", pictures.recalled},

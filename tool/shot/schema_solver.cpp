@@ -62,6 +62,9 @@ const Table<Shot>& solver_table() {
         .add("dilatation", of_solver(&P::dilatation),
              choice<Dilatation>({{"capped", Dilatation::Capped}, {"linear", Dilatation::Linear}}), "",
              "\"capped\" keeps strong stretch stable; \"linear\" is the bare linear material.")
+        .add("recovery", of_solver(&P::recovery), toggle(), "",
+             "dynamic: untangle elements that stay inverted or wound round an edge, by one rotation for each patch of "
+             "them.")
         .add("integrator", of_solver(&P::integrator),
              choice<Integrator>(
                  {{"euler", Integrator::Euler}, {"bdf2", Integrator::Bdf2}, {"newmark", Integrator::Newmark}}),

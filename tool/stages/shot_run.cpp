@@ -76,6 +76,7 @@ SimulationCounts ShotRun::counts(int last) const {
     sum.not_needed += counts.not_needed;
     sum.work += counts.work;
     sum.saved_seconds += counts.saved_seconds;
+    sum.recoveries.insert(sum.recoveries.end(), counts.recoveries.begin(), counts.recoveries.end());
   }
   return sum;
 }

@@ -6,7 +6,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give other frames.
-constexpr const char* kSimulationVersion = "simulation 4";
+constexpr const char* kSimulationVersion = "simulation 5";
 
 void add(KeyHasher& key, const Transform& t) {
   key.add(t.translate).add(t.rotate).add(t.scale);
@@ -46,7 +46,7 @@ StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraint
   const SolverParams& solver = shot.solver;
   key.add(solver.rotation).add(solver.dilatation).add(solver.max_iterations);
   if (shot.settings.mode == SimulationMode::Dynamic) {
-    key.add(shot.settings.fps).add(shot.settings.start);
+    key.add(solver.recovery).add(shot.settings.fps).add(shot.settings.start);
     add_steps(key, solver);
   } else {
     key.add(shot.settings.independent);

@@ -1,5 +1,7 @@
 #include "tool/stages/simulate_stage.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/base/check.h"
@@ -20,6 +22,7 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.accelerations);
   out.put(frame.state.previous_error);
   out.put(frame.state.previous_seconds);
+  out.put_array(frame.state.troubles);
   out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
   for (const auto& step : frame.earlier_steps) out.put_array(step);
   return out.take();
@@ -36,6 +39,7 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
   frame.state.accelerations = in.get_array<Vec3>();
   frame.state.previous_error = in.get<double>();
   frame.state.previous_seconds = in.get<double>();
+  frame.state.troubles = in.get_array<ElementTrouble>();
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
   return frame;
@@ -157,6 +161,7 @@ void BodySimulation::produce(int frame) {
   } else {
     counts_.computed += 1;
     counts_.work += made.work;
+    if (made.recovering_elements > 0) counts_.recoveries.push_back({settings_.name, frame, made.recovering_elements});
   }
   frame_ = std::move(made);
   frame_number_ = frame;
@@ -182,18 +187,19 @@ void BodySimulation::require_small_error(const FrameReport& report, int frame) c
 }
 
 /// Steps of time from the frame before.
-SimulationWork BodySimulation::advance(int frame, std::vector<std::vector<Vec3>>& earlier_steps) {
+void BodySimulation::advance(int frame, BodyFrame& result) {
   Simulator& body = simulator();
   simulator_holds_frame_ = false;  // until all of the frame is done
   const auto keep = [&](int part) {
-    if (part < shot_.solver.substeps) earlier_steps.push_back(body.state().positions);
+    if (part < shot_.solver.substeps) result.earlier_steps.push_back(body.state().positions);
   };
   const FrameReport report = advance_to_frame(
       body, frame, shot_.settings.fps, [&] { context_.stop_if_cancelled(); }, keep);
   require_solved(report.last, frame);
   require_small_error(report, frame);
-  return {report.linear_iterations, report.nonlinear_iterations, report.steps,
-          report.steps_at_rest,     report.steps_rejected,       0};
+  result.work = {report.linear_iterations, report.nonlinear_iterations, report.steps,
+                 report.steps_at_rest,     report.steps_rejected,       0};
+  result.recovering_elements = report.recovering_elements;
 }
 
 SimulationWork BodySimulation::find_equilibrium(int frame) {
@@ -223,7 +229,10 @@ BodyFrame BodySimulation::simulated(int frame) {
     result.state = frame_.state;
     return result;
   }
-  result.work = is_static || is_start ? find_equilibrium(frame) : advance(frame, result.earlier_steps);
+  if (is_static || is_start)
+    result.work = find_equilibrium(frame);
+  else
+    advance(frame, result);
   result.state = simulator_->state();
   simulator_holds_frame_ = true;
   return result;

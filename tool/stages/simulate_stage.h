@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/dynamics/frame_steps.h"
@@ -28,13 +29,22 @@ struct BodyFrame {
   SimulationState state;                         ///< at the frame
   std::vector<std::vector<Vec3>> earlier_steps;  ///< node positions after each sub-step of the frame but the last
   SimulationWork work;                           ///< of this run: nothing if from the cache
+  Index recovering_elements = 0;                 ///< most in a step; 0 if from the cache
+};
+
+/// Recovery at work in a frame.
+struct FrameRecovery {
+  std::string body;
+  int frame = 0;
+  Index elements = 0;  ///< most that shared a rotation in a step
 };
 
 /// What a run did and what it need not do, of one body or of several.
 struct SimulationCounts {
   int computed = 0, loaded = 0, not_needed = 0;
   SimulationWork work;
-  double saved_seconds = 0;  ///< what the frames that were not computed took when they were
+  double saved_seconds = 0;               ///< what the frames that were not computed took when they were
+  std::vector<FrameRecovery> recoveries;  ///< of the computed frames
 };
 
 /// Nothing is filled or simulated before it is asked for. Not thread-safe.
@@ -68,7 +78,7 @@ class BodySimulation {
   void produce(int frame);
   BodyFrame simulated(int frame);
   bool starts_from_rest(int frame) const;
-  SimulationWork advance(int frame, std::vector<std::vector<Vec3>>& earlier_steps);
+  void advance(int frame, BodyFrame& result);
   SimulationWork find_equilibrium(int frame);
   void require_solved(const StepReport& report, int frame) const;
   void require_small_error(const FrameReport& report, int frame) const;

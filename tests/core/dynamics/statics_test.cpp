@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -121,6 +122,28 @@ TEST(FindEquilibrium, PassesThePatchTest) {
   }
 }
 
+TEST(FindEquilibrium, PassesThePatchTestToRoundOffOnAnIrregularMesh) {
+  TetMesh mesh = testing::kuhn_bar({5, 5, 5}, Vec3(0.5, 0.45, 0.4));
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-0.02, 0.02);
+  for (Vec3& node : mesh.nodes) node += Vec3(uniform(random), uniform(random), uniform(random));
+  BodyModel model = body_model(mesh, rubber(0.4));
+  model.gravity.setZero();
+  Transform affine;
+  affine.rotate = Vec3(0.4, -0.2, 1.1);
+  affine.scale = Vec3(1.1, 0.95, 1.05);
+  std::vector<Index> boundary;
+  for (const Triangle& face : boundary_faces(mesh)) boundary.insert(boundary.end(), face.begin(), face.end());
+  model.pins = {testing::make_pin(boundary, affine)};
+  ASSERT_LT(NodePins(model.pins, model.embedding, mesh).at(1).count, static_cast<Index>(mesh.nodes.size()));
+  SolverParams params = exact_params();
+  params.force_tolerance = 1e-15;
+  Bench bench(model, params);
+  const StepReport report = bench.simulator.find_equilibrium(1);
+  ASSERT_TRUE(report.ok()) << report.culprit;
+  EXPECT_LT(largest_distance(bench.simulator.state().positions, transformed(affine, mesh.nodes)), 1e-12);
+}
+
 TEST(FindEquilibrium, StretchesStiffAndSoftHalvesInSeriesByTheirStiffness) {
   // nu = 0: the bar stays uniaxial, so the soft half takes 4/5 of the elongation.
   BodyModel model = body_model(testing::kuhn_bar({8, 2, 2}, Vec3(0.8, 0.2, 0.2)), rubber(0));
@@ -216,6 +239,35 @@ TEST(FindEquilibrium, HoldsAHalfTurnOfTwist) {
   const StepReport report = bench.simulator.find_equilibrium(1);
   ASSERT_TRUE(report.ok()) << report.culprit;
   EXPECT_LT(report.nonlinear_iterations, 60);
+}
+
+/// Newton iterations to twist a bar by 270 degrees in nine frames; each frame has to be found.
+int iterations_of_a_twist(RotationMethod rotation) {
+  BodyModel model = body_model(testing::kuhn_bar({12, 3, 3}, Vec3(1, 0.25, 0.25)), rubber(0.4));
+  model.gravity.setZero();
+  Transform start, turn;
+  start.pivot = turn.pivot = Vec3(0, 0.125, 0.125);
+  turn.rotate.x() = 1.5 * kPi;
+  model.pins = {testing::make_pin(plane_x(model.mesh, 0)),
+                {"body.bar.pin[1]", plane_x(model.mesh, 1), {{{0, start, Ease::Linear}, {9, turn, Ease::Linear}}}, {}}};
+  SolverParams params;
+  params.rotation = rotation;
+  Bench bench(model, params);
+  int iterations = 0;
+  for (int frame = 1; frame <= 9; ++frame) {
+    const StepReport report = bench.simulator.find_equilibrium(frame);
+    EXPECT_TRUE(report.ok()) << frame << " " << report.culprit;
+    iterations += report.nonlinear_iterations;
+  }
+  return iterations;
+}
+
+TEST(FindEquilibrium, TakesNoMoreIterationsWhereTheRotationHasNoEnergy) {
+  // The tangent of the consistent rotation in its place takes half as many again and more.
+  const int consistent = iterations_of_a_twist(RotationMethod::Consistent);
+  for (const RotationMethod rotation :
+       {RotationMethod::Energy, RotationMethod::Paper, RotationMethod::PolarSmooth, RotationMethod::Qr})
+    EXPECT_LT(iterations_of_a_twist(rotation), 1.2 * consistent);
 }
 
 TEST(FindEquilibrium, FindsTheSameShapeFromAboveAndBelow) {

@@ -170,6 +170,7 @@ poisson_ratio = 0.49
 [solver]
 rotation = "energy"
 dilatation = "linear"
+recovery = false
 integrator = "newmark"
 newmark_beta = 0.36
 newmark_gamma = 0.7

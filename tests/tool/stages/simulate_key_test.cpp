@@ -74,6 +74,15 @@ TEST(FrameKey, LooksChangeNothing) {
             0);
 }
 
+TEST(FrameKey, RecoveryMattersInDynamicsOnly) {
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.recovery = false; }), 1);
+  Shot shot = simple_shot();
+  shot.settings.mode = SimulationMode::Static;
+  const auto keys = simulation_keys(shot, simple_constraints(), "filled", "materials");
+  shot.solver.recovery = false;
+  EXPECT_EQ(simulation_keys(shot, simple_constraints(), "filled", "materials"), keys);
+}
+
 TEST(FrameKey, IndependentFramesKnowNothingOfEachOther) {
   Shot shot = simple_shot();
   shot.settings.mode = SimulationMode::Static;

@@ -1,0 +1,78 @@
+/// Each element's E, nu, density and both dampings are used, in steps in float and in double.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "tests/core/dynamics/dynamics_support.h"
+
+namespace softreel {
+namespace {
+
+using testing::Bench;
+using testing::body_model;
+
+/// The mesh and, beside it, a copy that touches it nowhere.
+TetMesh twice(const TetMesh& mesh) {
+  TetMesh both = mesh;
+  const auto n = static_cast<Index>(mesh.nodes.size());
+  for (const Vec3& node : mesh.nodes) both.nodes.push_back(node + Vec3(0, 0, 1));
+  for (const Tet& tet : mesh.tets) both.tets.push_back({tet[0] + n, tet[1] + n, tet[2] + n, tet[3] + n});
+  return both;
+}
+
+/// Stretched, sheared and turning.
+void set_in_motion(Simulator& simulator) {
+  SimulationState state = simulator.state();
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    Vec3& p = state.positions[i];
+    const double z = p.z() > 0.6 ? p.z() - 1 : p.z();
+    state.velocities[i] = Vec3(0.5 + p.y(), -0.2 + 2 * p.x(), 3 * z);
+    p = Vec3(1.1 * p.x() + 0.2 * p.y(), p.y(), p.z() + 0.1 * p.x());
+  }
+  simulator.set_state(state);
+}
+
+std::vector<Vec3> positions_after(const TetMesh& mesh, const std::vector<ElementMaterial>& materials,
+                                  double tolerance) {
+  BodyModel model = body_model(mesh, {});
+  model.materials = materials;
+  SolverParams params;
+  params.tolerance = tolerance;
+  Bench bench(model, params);
+  set_in_motion(bench.simulator);
+  for (int k = 1; k <= 8; ++k) EXPECT_TRUE(bench.simulator.step(k, 1.0 / 48).ok());
+  return bench.simulator.state().positions;
+}
+
+TEST(HeterogeneousBody, MovesEachPieceAsIfItWereAlone) {
+  const TetMesh mesh = testing::kuhn_bar({4, 2, 2}, Vec3(0.4, 0.2, 0.2)), both = twice(mesh);
+  const ElementMaterial plain{1e4, 0.3, 1000, 0.5, 0.005};
+  std::vector<ElementMaterial> others(5, plain);
+  others[0].youngs_modulus = 3e4;
+  others[1].poisson_ratio = 0.45;
+  others[2].density = 300;
+  others[3].damping_mass = 3;
+  others[4].damping_stiffness = 0.3;
+  for (const double tolerance : {1e-6, 1e-12})  // in float and in double
+    for (const ElementMaterial& other : others) {
+      std::vector<ElementMaterial> materials(mesh.tets.size(), plain);
+      const std::vector<Vec3> first = positions_after(mesh, materials, tolerance);
+      materials.assign(mesh.tets.size(), other);
+      const std::vector<Vec3> second = positions_after(mesh, materials, tolerance);
+      materials.assign(mesh.tets.size(), plain);
+      materials.resize(both.tets.size(), other);
+      const std::vector<Vec3> together = positions_after(both, materials, tolerance);
+      double error = 0, difference = 0;
+      const std::size_t n = mesh.nodes.size();
+      for (std::size_t i = 0; i < n; ++i) {
+        error =
+            std::max({error, (together[i] - first[i]).norm(), (together[n + i] - Vec3(0, 0, 1) - second[i]).norm()});
+        difference = std::max(difference, (first[i] - second[i]).norm());
+      }
+      EXPECT_GT(difference, 2e-4) << "the two materials move differently";
+      EXPECT_LT(error, std::max(3 * tolerance, 1e-10));
+    }
+}
+
+}  // namespace
+}  // namespace softreel
