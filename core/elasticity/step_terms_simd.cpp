@@ -48,20 +48,30 @@ struct Stress {
   Lanes slope;
 };
 
+[[gnu::always_inline]] inline Lanes trace(const Symmetric& s) {
+  return s[0] + s[3] + s[5];
+}
+
 /// Q^T G, symmetric part.
 [[gnu::always_inline]] inline Symmetric find_strain(const Matrix& rotation, const Matrix& gradient) {
   return detail::symmetric_part(detail::transposed_product(rotation, gradient));
 }
 
-[[gnu::always_inline]] inline Lanes trace(const Symmetric& s) {
-  return s[0] + s[3] + s[5];
-}
-
-/// strain, pressure: of the positions with the offsets; D: of the velocities.
-[[gnu::always_inline]] inline Stress find_stress(const ElementBatch& batch, const Symmetric& strain,
-                                                 const Pressure& pressure, const Symmetric& D, const Lanes& seconds,
-                                                 const Lanes& share) {
-  const Lanes two_mu = load(batch.mu) + load(batch.mu);
+/// kOffsets: there are offsets, whose gradient is `offset_gradient`.
+template <bool kOffsets>
+[[gnu::always_inline]] inline Stress find_stress(const ElementBatch& batch, const Matrix& rotation, const Matrix& F,
+                                                 const Matrix& velocity_gradient, const Matrix& offset_gradient,
+                                                 const Lanes& seconds, const Lanes& share) {
+  Symmetric strain = find_strain(rotation, F);
+  const Symmetric D = find_strain(rotation, velocity_gradient);
+  const Lanes one(1), two_mu = load(batch.mu) + load(batch.mu);
+  for (const std::size_t k : {0, 3, 5}) strain[k] -= one;
+  Pressure pressure = find_pressure(batch, trace(strain));
+  if constexpr (kOffsets) {
+    const Symmetric O = find_strain(rotation, offset_gradient);
+    for (std::size_t k = 0; k < 6; ++k) strain[k] += O[k];
+    pressure.value += pressure.slope * trace(O);
+  }
   const Lanes mean = seconds * pressure.value + share * (pressure.slope * trace(D));
   const auto deviator = [&](std::size_t k) { return two_mu * (seconds * strain[k] + share * D[k]); };
   return {{mean + deviator(0), deviator(1), deviator(2), mean + deviator(3), deviator(4), mean + deviator(5)},
@@ -116,27 +126,18 @@ template <bool kOffsets>
 std::int64_t find_batches(std::span<const ElementBatch> batches, const StepSource& source, float expected_ratio,
                           StepTerms& terms, std::size_t begin, std::size_t end) {
   std::int64_t different = 0;
-  const Lanes seconds(source.seconds.velocity), reach(source.seconds.position), one(1);
+  const Lanes seconds(source.seconds.velocity), reach(source.seconds.position);
   for (std::size_t b = begin; b < end; ++b) {
     const ElementBatch& batch = batches[b];
     const std::size_t first = kElementLanes * b, last = source.rotations.size() - 1;
     const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
     const Lanes share =
         seconds * (reach + Lanes([&](auto lane) { return source.damping_stiffness[std::min(first + lane, last)]; }));
-    const auto strain_along = [&](std::span<const Vec3> vectors) {
-      return find_strain(Q, detail::gradient<Lanes>(batch, vectors, stdx::vector_aligned));
-    };
-    Symmetric strain = strain_along(source.positions);
-    strain[0] -= one;
-    strain[3] -= one;
-    strain[5] -= one;
-    Pressure pressure = find_pressure(batch, trace(strain));
-    if constexpr (kOffsets) {
-      const Symmetric O = strain_along(source.offsets);
-      for (std::size_t k = 0; k < 6; ++k) strain[k] += O[k];
-      pressure.value += pressure.slope * trace(O);
-    }
-    const Stress stress = find_stress(batch, strain, pressure, strain_along(source.velocities), seconds, share);
+    const Matrix F = detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned);
+    const Matrix G = detail::gradient<Lanes>(batch, source.velocities, stdx::vector_aligned);
+    Matrix offset_gradient{};
+    if constexpr (kOffsets) offset_gradient = detail::gradient<Lanes>(batch, source.offsets, stdx::vector_aligned);
+    const Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share);
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;
     Matrix T = detail::product(Q, stress.value), scaled = Q;
     const Lanes scale = stdx::sqrt(share * volume * mu);
