@@ -5,6 +5,7 @@
 #include <string>
 
 #include <Eigen/Eigenvalues>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/dynamics/simulator.h"
@@ -99,7 +100,7 @@ TEST(TimeStep, HasTheOrderOfItsIntegratorUnlessItIsLinearisedAtTheStart) {
   const BodyModel model = turned_bar();
   for (const Scheme& scheme : schemes) {
     const double order = measured_order(model, params_of(scheme), 1.0, 256);
-    RecordProperty(scheme.name, std::to_string(order));
+    RecordProperty(scheme.name, fmt::format("{:.3f}", order));
     EXPECT_NEAR(order, scheme.order, 0.15) << scheme.name;
   }
 }
@@ -142,7 +143,7 @@ TEST(TimeStep, NewmarkKeepsTheEnergyOfSmallStrainOverTenThousandSteps) {
   Bench bench(model, params);
   bench.simulator.set_state(stretched(bench.simulator, 0.01));
   const double drift = energy_drift(bench, 10000, 0.01);
-  RecordProperty("drift", std::to_string(drift));
+  RecordProperty("drift", fmt::format("{:.3g}", drift));
   EXPECT_LT(drift, 1e-9);
 }
 
@@ -153,7 +154,7 @@ TEST(TimeStep, NewmarkBoundsTheDriftOfEnergyWhereElementsTurn) {
     state.velocities[i] = Vec3(0, 1, 3).cross(state.positions[i] - Vec3(0.4, 0.1, 0.1));
   bench.simulator.set_state(state);
   const double drift = energy_drift(bench, 1000, 0.005);
-  RecordProperty("drift", std::to_string(drift));
+  RecordProperty("drift", fmt::format("{:.3g}", drift));
   EXPECT_LT(drift, 0.01) << "over 16 turns";
 }
 
