@@ -56,11 +56,11 @@ TEST_F(Status, NamesTheFieldThatMadeFramesStaleWithOldAndNewValue) {
   start("stale");
   render();
   const std::string edits =
-      "--set 'body.ball.pull[0].active=[1,3]' --set solver.force_tolerance=1e-3 --set golden.threshold=0.5";
+      "--set 'body.ball.pull[0].active=[1,3]' --set solver.max_newton_iterations=9 --set golden.threshold=0.5";
   const json simulation = stage("simulation", edits);
   EXPECT_EQ(simulation["done"], json({1, 2, 3}));
   EXPECT_EQ(simulation["stale"], json({4}));
-  ASSERT_EQ(simulation["because"].size(), 1U) << "statics' tolerance and golden images concern nothing here";
+  ASSERT_EQ(simulation["because"].size(), 1U) << "iterations of statics and golden images concern nothing here";
   EXPECT_EQ(simulation["because"][0]["field"], "body.ball.pull[0].active");
   EXPECT_EQ(simulation["because"][0]["frames"], json({4}));
   EXPECT_EQ(simulation["because"][0]["after"], "[1, 3]");
