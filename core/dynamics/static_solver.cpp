@@ -193,8 +193,12 @@ std::vector<Vec3> StaticSolver::forces_at(std::vector<Vec3> positions, std::vect
   find_rotations(parts_.body, parts_.params.rotation, positions, rotations, parts_.threads);
   find_stresses(parts_.body, positions, rotations, parts_.stresses, parts_.threads);
   parts_.gather_all_forces(positions, pulls_, forces);
-  for (std::size_t i = 0; i < forces.size(); ++i)
+  std::vector<Vec3> of_step(potential_ != nullptr ? forces.size() : 0);
+  if (potential_ != nullptr) potential_->evaluate(positions, of_step, parts_.threads);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (potential_ != nullptr) forces[i] += of_step[i];
     if (held_[i] != 0) forces[i].setZero();
+  }
   return forces;
 }
 
@@ -217,8 +221,11 @@ bool StaticSolver::find_direction_without_energy(const StaticState& state, std::
     std::vector<Vec3> positions = state.positions;
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] += step * v[i];
     const std::vector<Vec3> forces = forces_at(std::move(positions), state.rotations);
-    for (std::size_t i = 0; i < product.size(); ++i)
-      product[i] = node_terms_[i] * v[i] + (step > 0 ? Vec3((state.forces[i] - forces[i]) / step) : Vec3(Vec3::Zero()));
+    for (std::size_t i = 0; i < product.size(); ++i) {
+      product[i] = step > 0 ? Vec3((state.forces[i] - forces[i]) / step) : Vec3(Vec3::Zero());
+      // What holds the rigid motions of statics is no force; the inertia of a step is, and is in the difference.
+      if (potential_ == nullptr) product[i] += node_terms_[i] * v[i];
+    }
     zero_held(product);
   };
   const auto precondition_vector = [&](std::span<const Vec3> r, std::span<Vec3> z) {
