@@ -41,7 +41,9 @@ StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraint
   }
   if (shot.settings.mode == SimulationMode::Static || shot.settings.start == StartState::Equilibrium)
     key.add(solver.force_tolerance).add(solver.max_newton_iterations);
-  key.add(solver.multigrid.galerkin);
+  const MultigridParams& multigrid = solver.multigrid;
+  key.add(multigrid.galerkin).add(multigrid.method).add(multigrid.coarse_cycle).add(multigrid.smoother);
+  key.add(multigrid.sweeps).add(multigrid.chebyshev_degree);
   for (const Pin& pin : constraints.pins) key.add(pin.points);
   for (const Pull& pull : constraints.pulls) key.add(pull.points).add(pull.weights).add(pull.max_force);
   return key.key();
