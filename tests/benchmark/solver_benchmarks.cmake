@@ -28,3 +28,6 @@ else()
   target_sources(solver_rivals PRIVATE "${here}/rivals/no_petsc.cpp")
 endif()
 message(STATUS "softreel benchmarks: rivals CHOLMOD '${SOFTREEL_CHOLMOD}', PETSc '${SOFTREEL_PETSC_VERSION}'")
+
+add_executable(iteration_counts "${here}/iteration_counts.cpp")
+target_link_libraries(iteration_counts PRIVATE bar_problem softreel_warnings fmt::fmt)
