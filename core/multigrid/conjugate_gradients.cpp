@@ -128,6 +128,7 @@ ConjugateGradients::Verdict ConjugateGradients::judge_small_residual(const Block
 ConjugateGradients::Verdict ConjugateGradients::recover(const BlockMatrixd& A, double target, bool lost,
                                                         const Preconditioner& preconditioner, SolveStatus& status) {
   const bool fresh = rz_ == 0;
+  const double rz = rz_;
   refresh_residual(A);
   status = SolveStatus::Breakdown;
   if (!std::isfinite(r_norm_)) return Verdict::Stop;
@@ -137,6 +138,8 @@ ConjugateGradients::Verdict ConjugateGradients::recover(const BlockMatrixd& A, d
     return Verdict::Stop;
   }
   if (preconditioner.improve()) return Verdict::GoOn;
+  // Slow, but with no better preconditioner to be had: a new start would only lose what the directions know.
+  if (!lost) rz_ = rz;
   return lost && fresh ? Verdict::Stop : Verdict::GoOn;
 }
 
