@@ -1,10 +1,11 @@
 /// Counts the iterations of the multigrid solver over sizes, Poisson's ratios, aspects and stiffness contrasts.
 ///
 /// iteration_counts [--tets N,N,...] [--smoother gauss_seidel|one_way_gauss_seidel|chebyshev] [--sweeps N] [--degree N]
-/// [--threads N] prints tab-separated values: iterations to 1e-6 of bars of about that many tetrahedra each (default
-/// 11000). state: rest, under weight, whose error is smooth; or deformed as in solver_rivals. contrast: none, or
-/// Young's modulus 1e6 times higher in every second block of half the bar's width, in three dimensions, or in a tenth
-/// of the elements, drawn at random. ratio: to the first size's bar of aspect 4, nu 0.3, same problem and state.
+/// [--copy_contrast X] [--threads N] prints tab-separated values: iterations to 1e-6 of bars of about that many
+/// tetrahedra each (default 11000). state: rest, under weight, whose error is smooth; or deformed as in solver_rivals.
+/// contrast: none, or Young's modulus 1e6 times higher in every second block of half the bar's width, in three
+/// dimensions, or in a tenth of the elements, drawn at random. ratio: to the first size's bar of aspect 4, nu 0.3, same
+/// problem and state.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -118,6 +119,8 @@ Options parse(int argc, char** argv) {
       options.params.sweeps = std::stoi(value);
     } else if (option == "--degree") {
       options.params.chebyshev_degree = std::stoi(value);
+    } else if (option == "--copy_contrast") {
+      options.params.stiffness_contrast = std::stod(value);
     } else if (option == "--threads") {
       options.threads = std::stoi(value);
     } else {
