@@ -31,3 +31,10 @@ message(STATUS "softreel benchmarks: rivals CHOLMOD '${SOFTREEL_CHOLMOD}', PETSc
 
 add_executable(iteration_counts "${here}/iteration_counts.cpp")
 target_link_libraries(iteration_counts PRIVATE bar_problem softreel_warnings fmt::fmt)
+
+# One Google Benchmark program per kernel.
+find_package(benchmark REQUIRED)
+foreach(kernel rotation assembly galerkin smoother cycle block_product)
+  add_executable(${kernel}_benchmark "${here}/kernels/${kernel}_benchmark.cpp")
+  target_link_libraries(${kernel}_benchmark PRIVATE bar_problem softreel_warnings benchmark::benchmark_main)
+endforeach()
