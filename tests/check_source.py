@@ -25,6 +25,7 @@ FENCES = [
     (r"<(EGL|GL|epoxy)/", r"render/preview/preview_egl\.cpp$"),
     (r"<(Imf|Imath|OpenEXR|png\.h|stb)", r"render/image/image_io\.cpp$"),
     (r"<(toml\+\+|nlohmann|CLI)/", r"^(tool|tests/tool)/"),
+    (r"<(petsc|cholmod|Eigen/CholmodSupport)", r"^tests/benchmark/rivals/"),
     (r"<(immintrin|x86intrin|experimental/simd)", r"_simd\.(cpp|h)$"),
 ]
 

@@ -79,7 +79,7 @@ SolveStatus ConjugateGradients::iterate(const BlockMatrixd& A, const CgLimits& l
   while (std::isfinite(r_norm_)) {
     if (r_norm_ <= target && judge_small_residual(A, target, status) == Verdict::Stop) return status;
     if (iterations >= limits.max_iterations) return SolveStatus::MaxIterations;
-    const bool lost = step(A, preconditioner) == Step::Lost;
+    const bool lost = step(A, limits, preconditioner) == Step::Lost;
     ++iterations;
     if (r_norm_ <= 0.5 * milestone) {
       milestone = r_norm_;
@@ -94,16 +94,18 @@ SolveStatus ConjugateGradients::iterate(const BlockMatrixd& A, const CgLimits& l
 }
 
 /// One iteration; x changes only if the numbers are those of a positive definite matrix and preconditioner.
-ConjugateGradients::Step ConjugateGradients::step(const BlockMatrixd& A, const Preconditioner& preconditioner) {
+ConjugateGradients::Step ConjugateGradients::step(const BlockMatrixd& A, const CgLimits& limits,
+                                                  const Preconditioner& preconditioner) {
+  const bool bare = limits.method == SolveMethod::Cycles;
   preconditioner.apply(r_, r_norm_, z_);
   const double rz = dot(z_, r_, threads_);
   if (!(rz > 0) || !std::isfinite(rz)) return Step::Lost;
   // r - r_old = -alpha q, so that r_old need not be kept.
-  const double beta = rz_ > 0 ? -alpha_ * dot(z_, q_, threads_) / rz_ : 0.0;
+  const double beta = !bare && rz_ > 0 ? -alpha_ * dot(z_, q_, threads_) / rz_ : 0.0;
   scale_and_add(beta, z_, p_, threads_);
   const double curvature = multiply_and_dot(A, p_, q_, threads_);
   if (!(curvature > 0) || !std::isfinite(curvature)) return Step::Lost;
-  alpha_ = rz / curvature;
+  alpha_ = bare ? 1.0 : rz / curvature;
   rz_ = rz;
   add_scaled(alpha_, p_, x_, threads_);
   r_norm_ = std::sqrt(add_scaled_and_square(-alpha_, q_, r_, threads_));
@@ -126,6 +128,7 @@ ConjugateGradients::Verdict ConjugateGradients::judge_small_residual(const Block
 ConjugateGradients::Verdict ConjugateGradients::recover(const BlockMatrixd& A, double target, bool lost,
                                                         const Preconditioner& preconditioner, SolveStatus& status) {
   const bool fresh = rz_ == 0;
+  const double rz = rz_;
   refresh_residual(A);
   status = SolveStatus::Breakdown;
   if (!std::isfinite(r_norm_)) return Verdict::Stop;
@@ -135,6 +138,8 @@ ConjugateGradients::Verdict ConjugateGradients::recover(const BlockMatrixd& A, d
     return Verdict::Stop;
   }
   if (preconditioner.improve()) return Verdict::GoOn;
+  // Slow, but with no better preconditioner to be had: a new start would only lose what the directions know.
+  if (!lost) rz_ = rz;
   return lost && fresh ? Verdict::Stop : Verdict::GoOn;
 }
 

@@ -1,4 +1,5 @@
-/// Flexible conjugate gradients in double for symmetric positive definite block matrices.
+/// Flexible conjugate gradients in double for symmetric positive definite block matrices, and the bare iteration with
+/// the same preconditioner.
 ///
 /// Notay, Flexible conjugate gradients (2000): beta = z . (r - r_old) / (z_old . r_old) keeps descent although a float
 /// cycle is not quite the same symmetric operator every time.
@@ -8,6 +9,7 @@
 #include <span>
 
 #include "core/base/parallel.h"
+#include "core/multigrid/multigrid.h"
 #include "core/sparse/block_kernels.h"
 #include "core/sparse/block_matrix.h"
 #include "core/sparse/solve_report.h"
@@ -22,11 +24,12 @@ struct Preconditioner {
   std::function<bool()> improve;
 };
 
-/// When to stop.
+/// When to stop, and how to get there.
 struct CgLimits {
   double tolerance = 1e-6;        ///< |b - A x| <= tolerance |b| ...
   double absolute_tolerance = 0;  ///< ... or <= this
   int max_iterations = 400;
+  SolveMethod method = SolveMethod::ConjugateGradients;
 };
 
 /// The solver with its work vectors, kept between solves.
@@ -46,7 +49,7 @@ class ConjugateGradients {
 
   void start(const BlockMatrixd& A, std::span<const Vec3> b, std::span<Vec3> x);
   void refresh_residual(const BlockMatrixd& A);
-  Step step(const BlockMatrixd& A, const Preconditioner& preconditioner);
+  Step step(const BlockMatrixd& A, const CgLimits& limits, const Preconditioner& preconditioner);
   SolveStatus iterate(const BlockMatrixd& A, const CgLimits& limits, const Preconditioner& preconditioner,
                       int& iterations);
   Verdict judge_small_residual(const BlockMatrixd& A, double target, SolveStatus& status);

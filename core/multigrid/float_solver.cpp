@@ -65,7 +65,8 @@ double FloatSolver::advance(const NodeVector<float>& residual_of_z, float beta, 
   });
 }
 
-SolveReport FloatSolver::solve(double target, int max_iterations) {
+SolveReport FloatSolver::solve(double target, int max_iterations, SolveMethod method) {
+  const bool bare = method == SolveMethod::Cycles;
   const std::size_t size = cycle_.right_side().size();
   for (NodeVector<float>* vector : {&x_, &p_, &q_}) vector->assign(size, 0.0F);
   SolveReport report{SolveStatus::Breakdown, 0, 1, false};
@@ -77,10 +78,11 @@ SolveReport FloatSolver::solve(double target, int max_iterations) {
     const Dots dots = find_dots(residual_of_z);
     // Flexible: beta = z . (r - r_old) / (z_old . r_old) with r - r_old = -alpha q and alpha = z_old . r_old / (p . q).
     // Then p_new . q_new = z . A z - (z . q)^2 / (p . q), without another sum.
-    const double beta = pq_before > 0 ? -dots.zq / pq_before : 0.0;
+    const double beta = !bare && pq_before > 0 ? -dots.zq / pq_before : 0.0;
     const double pq = dots.zAz + beta * dots.zq;
     if (!(dots.zr > 0) || !(pq > 0) || !std::isfinite(dots.zr) || !std::isfinite(pq)) return report;
-    const double rr = advance(residual_of_z, static_cast<float>(beta), static_cast<float>(dots.zr / pq));
+    const double alpha = bare ? 1.0 : dots.zr / pq;
+    const double rr = advance(residual_of_z, static_cast<float>(beta), static_cast<float>(alpha));
     pq_before = pq;
     ++report.iterations;
     report.residual = std::sqrt(rr);

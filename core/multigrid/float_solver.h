@@ -1,8 +1,9 @@
-/// Conjugate gradients in float on the finest level of a float cycle: one correction within a refinement in double.
+/// Conjugate gradients, or the bare cycles, in float on the finest level of a float cycle: one correction within a
+/// refinement in double.
 ///
-/// After its last sweep the cycle knows A z for half a product (Smoother::find_swept_residual), and A p follows from it
-/// as p does from z: there is no product with A, and no matrix but the cycle's own. Bound: an iteration reads the float
-/// matrix 3.5 times instead of 3 times and a matrix in double once.
+/// After its last sweep the cycle knows A z for half a product (Smoother::find_smoothed_residual), and A p follows from
+/// it as p does from z: there is no product with A, and no matrix but the cycle's own. Bound: an iteration reads the
+/// float matrix 3.5 times instead of 3 times (symmetric Gauss-Seidel) and a matrix in double once.
 #pragma once
 
 #include <span>
@@ -21,7 +22,7 @@ class FloatSolver {
 
   /// Solves A y = r for r = cycle.right_side(), which becomes the residual, to |r| <= target in float arithmetic.
   /// Status: Converged, MaxIterations, or Breakdown after stagnation or loss of definiteness.
-  SolveReport solve(double target, int max_iterations);
+  SolveReport solve(double target, int max_iterations, SolveMethod method);
 
   /// The last solution, in the order of the cycle's level 0.
   const NodeVector<float>& solution() const { return x_; }

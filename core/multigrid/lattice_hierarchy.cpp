@@ -34,22 +34,26 @@ Vec3 upper_corner(const std::vector<Vec3>& points) {
   return high;
 }
 
-double mean_edge(const TetMesh& mesh) {
-  double sum = 0;
-  for (const Tet& tet : mesh.tets)
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t b = a + 1; b < 4; ++b)
-        sum += (mesh.nodes[static_cast<std::size_t>(tet[a])] - mesh.nodes[static_cast<std::size_t>(tet[b])]).norm();
-  return mesh.tets.empty() ? 0 : sum / (6.0 * static_cast<double>(mesh.tets.size()));
+/// Spacing of the BCC lattice whose tetrahedra, 12 per cube, have the mesh's median volume; 0 for no tetrahedra.
+/// Volume, not edges: it says how many nodes there are, and the median minds neither slivers nor a few large elements.
+double typical_spacing(const TetMesh& mesh) {
+  std::vector<double> volumes;
+  for (const Tet& tet : mesh.tets) {
+    const auto at = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(tet[k])]; };
+    volumes.push_back(std::abs(tet_volume(at(0), at(1), at(2), at(3))));
+  }
+  if (volumes.empty()) return 0;
+  const auto middle = volumes.begin() + static_cast<std::ptrdiff_t>(volumes.size() / 2);
+  std::nth_element(volumes.begin(), middle, volumes.end());
+  return std::cbrt(12 * *middle);
 }
 
-/// The lattice whose doublings cover the mesh: its own, or for a mesh made elsewhere one whose tetrahedra have the
-/// same mean edge. A BCC tetrahedron has two edges of the spacing h and four of sqrt(3)/2 h.
+/// The lattice whose doublings cover the mesh: its own, or for a mesh made elsewhere one of like tetrahedra.
 LatticeFrame finest_frame(const TetMesh& mesh) {
   LatticeFrame frame = mesh.lattice;
   const Vec3 low = lower_corner(mesh.nodes);
   const double extent = (upper_corner(mesh.nodes) - low).maxCoeff();
-  if (!(frame.spacing > 0)) frame = {low, mean_edge(mesh) / ((1 + std::sqrt(3.0)) / 3)};
+  if (!(frame.spacing > 0)) frame = {low, typical_spacing(mesh)};
   if (!(frame.spacing > 0)) frame.spacing = extent > 0 ? extent : 1.0;
   // A frame far away or absurdly fine for the mesh would leave the range of lattice coordinates.
   const double reach = (low - frame.origin).cwiseAbs().maxCoeff() + extent;

@@ -33,7 +33,7 @@ struct LatticeHierarchy {
 
 /// Lattices of spacing 2h, 4h, ... with the mesh's origin, until a level has at most params.bottom_nodes nodes or is
 /// cheap to factor anyway, or until the next would hardly be smaller (many separate pieces). A mesh without a lattice
-/// (spacing 0) gets one from its mean edge. element_stiffness and pattern: as for Multigrid.
+/// (spacing 0) gets one from its median volume. element_stiffness and pattern: as for Multigrid.
 LatticeHierarchy build_lattice_hierarchy(const TetMesh& mesh, std::span<const double> element_stiffness,
                                          const BlockPattern& pattern, const MultigridParams& params);
 

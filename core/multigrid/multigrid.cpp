@@ -145,7 +145,8 @@ SolveReport Multigrid::solve(const BlockMatrixd& matrix, std::span<const Vec3> b
                                             levels.float_cycle.apply(r, r_norm, z);
                                         },
                                         [&] { return levels.use_double_cycle(matrix); }};
-    report = levels.solver.solve(matrix, b, x, {tolerance, absolute_tolerance, max_iterations}, preconditioner);
+    report = levels.solver.solve(matrix, b, x, {tolerance, absolute_tolerance, max_iterations, levels.params.method},
+                                 preconditioner);
   }
   report.double_cycle = levels.double_cycle.has_value();
   return report;
@@ -191,7 +192,7 @@ FloatCorrection Multigrid::correct_in_float(std::span<const Vec3> r, double targ
     }
   });
   FloatCorrection correction;
-  correction.report = levels.float_solver.solve(target / norm, max_iterations);
+  correction.report = levels.float_solver.solve(target / norm, max_iterations, levels.params.method);
   correction.rounding = kRoundingUnits * std::numeric_limits<float>::epsilon() * levels.gather_correction(norm, y);
   return correction;
 }

@@ -25,10 +25,25 @@ namespace softreel {
 enum class GalerkinMethod { Naive, Stream, Gather };
 enum class CycleKind { V, W };
 
+/// What a solve iterates with.
+enum class SolveMethod {
+  ConjugateGradients,  ///< preconditioned by a cycle
+  Cycles               ///< the cycle itself, as in the paper: x += cycle(b - A x)
+};
+
+enum class SmootherKind {
+  GaussSeidel,        ///< forward and backward, before and after the coarse correction
+  OneWayGaussSeidel,  ///< forward before, backward after: the paper's 1 + 1
+  Chebyshev           ///< a polynomial in the matrix
+};
+
 struct MultigridParams {
   GalerkinMethod galerkin = GalerkinMethod::Gather;  ///< how R K R^T is formed; all agree to round-off
-  CycleKind coarse_cycle = CycleKind::W;             ///< below the finest level, which always takes one V
-  int sweeps = 1;                                    ///< symmetric Gauss-Seidel sweeps before and after
+  SolveMethod method = SolveMethod::ConjugateGradients;
+  CycleKind coarse_cycle = CycleKind::W;  ///< below the finest level, which always takes one V
+  SmootherKind smoother = SmootherKind::GaussSeidel;
+  int sweeps = 1;                  ///< of the smoother, before and after the coarse correction
+  int chebyshev_degree = 2;        ///< of the polynomial, if that is the smoother
   int bottom_nodes = 150;          ///< a level of at most this many nodes goes to Cholesky; slender ones sooner
   double dropped_weight = 0.1;     ///< transfer weights below are dropped, the rest renormalised
   double stiffness_contrast = 10;  ///< coarse nodes are copied per side of an edge of more contrast

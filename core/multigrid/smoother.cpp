@@ -1,10 +1,9 @@
 #include "core/multigrid/smoother.h"
 
 #include <cmath>
-#include <type_traits>
 
-#include "core/base/check.h"
-#include "core/sparse/row_product_simd.h"
+#include "core/multigrid/chebyshev.h"
+#include "core/multigrid/gauss_seidel.h"
 
 namespace softreel {
 namespace {
@@ -12,45 +11,6 @@ namespace {
 /// A block counts as positive definite if its determinant is this share of the product of its diagonal: above the
 /// rounding of the cofactors.
 constexpr double kLeastDeterminant = 1e-14;
-
-/// The rows of a level by plain pointers, for the inner loops.
-template <typename Scalar>
-struct Rows {
-  Rows(const LatticeLevel& level, const BlockMatrix<Scalar>& matrix, const AlignedVector<Scalar>& inverses)
-      : values(matrix.values.data()),
-        columns(level.pattern.column_indices.data()),
-        offsets(level.pattern.row_offsets.data()),
-        diagonal(level.diagonal.data()),
-        inverse(inverses.data()) {}
-
-  [[gnu::always_inline]] NodeLanes<Scalar> left_sum(std::int64_t i, const Scalar* x) const {
-    return sum(offsets[i], diagonal[i], x);
-  }
-  [[gnu::always_inline]] NodeLanes<Scalar> right_sum(std::int64_t i, const Scalar* x) const {
-    return sum(diagonal[i] + 1, offsets[i + 1], x);
-  }
-  [[gnu::always_inline]] NodeLanes<Scalar> full_sum(std::int64_t i, const Scalar* x) const {
-    return sum(offsets[i], offsets[i + 1], x);
-  }
-  [[gnu::always_inline]] NodeLanes<Scalar> sum(std::int64_t begin, std::int64_t end, const Scalar* x) const {
-    if constexpr (std::is_same_v<Scalar, float>)
-      return paired_row_product(values, columns, begin, end, x);
-    else
-      return column_major_row_product(values, columns, begin, end, x);
-  }
-  /// The fourth lane of the result is 0 whatever that of rhs.
-  [[gnu::always_inline]] NodeLanes<Scalar> solve_diagonal(std::int64_t i, const NodeLanes<Scalar>& rhs) const {
-    using Column = Eigen::Map<const NodeLanes<Scalar>>;
-    const Scalar* const column = inverse + 12 * i;
-    return Column(column) * rhs[0] + (Column(column + 4) * rhs[1] + Column(column + 8) * rhs[2]);
-  }
-
-  const Scalar* values;
-  const Index* columns;
-  const std::int64_t* offsets;
-  const std::int64_t* diagonal;
-  const Scalar* inverse;
-};
 
 /// Inverse of a symmetric 3x3 block by cofactors, in double, as 3 columns of 4 lanes; false, and nothing stored, if the
 /// block is not positive definite.
@@ -77,9 +37,7 @@ bool invert(const Scalar* block, Scalar* inverse) {
 template <typename Scalar>
 Smoother<Scalar>::Smoother(const LatticeLevel& level, const BlockMatrix<Scalar>& matrix)
     : level_(level), matrix_(matrix) {
-  const auto rows = static_cast<std::size_t>(level.pattern.rows());
-  inverses_.assign(12 * rows, Scalar{0});
-  left_sums_.assign(4 * rows, Scalar{0});
+  inverses_.assign(12 * static_cast<std::size_t>(level.pattern.rows()), Scalar{0});
 }
 
 template <typename Scalar>
@@ -95,87 +53,33 @@ bool Smoother<Scalar>::update(const Threads& threads) {
 }
 
 template <typename Scalar>
-template <typename RowUpdate>
-void Smoother<Scalar>::for_color(std::size_t color, const Threads& threads, const RowUpdate& update) const {
-  const std::int64_t first = level_.color_offsets[color], count = level_.color_offsets[color + 1] - first;
-  threads.for_chunks(count, kSweepGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = first + begin; i < first + end; ++i) update(i);
-  });
-}
-
-template <typename Scalar>
-void Smoother<Scalar>::forward_from_zero(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
-  const Rows<Scalar> rows(level_, matrix_, inverses_);
-  for (std::size_t color = 0; color + 1 < level_.color_offsets.size(); ++color)
-    for_color(color, threads, [&](std::int64_t i) {
-      const NodeLanes<Scalar> left = rows.left_sum(i, x.data());
-      lanes(left_sums_, i) = left;
-      lanes(x, i) = rows.solve_diagonal(i, lanes(b, i) - left);
-    });
-}
-
-template <typename Scalar>
-void Smoother<Scalar>::forward(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
-  const Rows<Scalar> rows(level_, matrix_, inverses_);
-  for (std::size_t color = 0; color + 1 < level_.color_offsets.size(); ++color)
-    for_color(color, threads, [&](std::int64_t i) {
-      const NodeLanes<Scalar> left = rows.left_sum(i, x.data());
-      lanes(left_sums_, i) = left;
-      lanes(x, i) = rows.solve_diagonal(i, lanes(b, i) - left - rows.right_sum(i, x.data()));
-    });
-}
-
-template <typename Scalar>
-void Smoother<Scalar>::backward(const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
-  const Rows<Scalar> rows(level_, matrix_, inverses_);
-  for (std::size_t color = level_.color_offsets.size() - 1; color-- > 0;)
-    for_color(color, threads, [&](std::int64_t i) {
-      lanes(x, i) = rows.solve_diagonal(i, lanes(b, i) - lanes(left_sums_, i) - rows.right_sum(i, x.data()));
-    });
-}
-
-template <typename Scalar>
-void Smoother<Scalar>::smooth_from_zero(int sweeps, const NodeVector<Scalar>& b, NodeVector<Scalar>& x,
-                                        NodeVector<Scalar>& r, const Threads& threads) {
-  CHECK(sweeps >= 1);
-  forward_from_zero(b, x, threads);
-  backward(b, x, threads);
-  smooth(sweeps - 1, b, x, threads);
-  find_swept_residual(x, r, threads);
-}
-
-template <typename Scalar>
-void Smoother<Scalar>::smooth(int sweeps, const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) {
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    forward(b, x, threads);
-    backward(b, x, threads);
-  }
-}
-
-template <typename Scalar>
 void Smoother<Scalar>::find_residual(const NodeVector<Scalar>& b, const NodeVector<Scalar>& x, NodeVector<Scalar>& r,
                                      const Threads& threads) const {
-  const Rows<Scalar> rows(level_, matrix_, inverses_);
+  const Rows rows(*this);
   threads.for_chunks(level_.pattern.rows(), kSweepGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(b, i) - rows.full_sum(i, x.data());
   });
 }
 
 template <typename Scalar>
-void Smoother<Scalar>::find_swept_residual(const NodeVector<Scalar>& x, NodeVector<Scalar>& r,
-                                           const Threads& threads) const {
-  const Rows<Scalar> rows(level_, matrix_, inverses_);
-  threads.for_chunks(level_.pattern.rows(), kSweepGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) lanes(r, i) = lanes(left_sums_, i) - rows.left_sum(i, x.data());
-  });
-}
-
-template <typename Scalar>
-std::int64_t Smoother<Scalar>::bytes() const {
-  return static_cast<std::int64_t>((inverses_.size() + left_sums_.size()) * sizeof(Scalar));
+std::unique_ptr<Smoother<Scalar>> make_smoother(const MultigridParams& params, const LatticeLevel& level,
+                                                const BlockMatrix<Scalar>& matrix) {
+  switch (params.smoother) {
+    case SmootherKind::GaussSeidel:
+      return std::make_unique<GaussSeidel<Scalar>>(level, matrix, SweepDirections::Both);
+    case SmootherKind::OneWayGaussSeidel:
+      return std::make_unique<GaussSeidel<Scalar>>(level, matrix, SweepDirections::OneWay);
+    case SmootherKind::Chebyshev:
+      return std::make_unique<Chebyshev<Scalar>>(level, matrix, params.chebyshev_degree);
+  }
+  return nullptr;
 }
 
 template class Smoother<float>;
 template class Smoother<double>;
+template std::unique_ptr<Smoother<float>> make_smoother(const MultigridParams&, const LatticeLevel&,
+                                                        const BlockMatrixf&);
+template std::unique_ptr<Smoother<double>> make_smoother(const MultigridParams&, const LatticeLevel&,
+                                                         const BlockMatrixd&);
 
 }  // namespace softreel

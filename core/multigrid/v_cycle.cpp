@@ -15,12 +15,13 @@ constexpr double kPivotNoise = 8.0 * std::numeric_limits<Scalar>::epsilon();
 }  // namespace
 
 template <typename Scalar>
-Cycle<Scalar>::Level::Level(const LatticeLevel& level_structure, bool last) : structure(level_structure) {
+Cycle<Scalar>::Level::Level(const LatticeLevel& level_structure, const MultigridParams& params, bool last)
+    : structure(level_structure) {
   matrix.pattern = structure.pattern;
   reserve_values(matrix);
   const std::size_t lanes_total = 4 * static_cast<std::size_t>(structure.pattern.rows());
   for (NodeVector<Scalar>* vector : {&b, &x, &r, &correction}) vector->assign(lanes_total, Scalar{0});
-  if (!last) smoother = std::make_unique<Smoother<Scalar>>(structure, matrix);
+  if (!last) smoother = make_smoother<Scalar>(params, structure, matrix);
 }
 
 template <typename Scalar>
@@ -28,7 +29,7 @@ Cycle<Scalar>::Cycle(const LatticeHierarchy& hierarchy, const MultigridParams& p
     : hierarchy_(hierarchy), params_(params), threads_(threads), bottom_(hierarchy.levels.back().pattern) {
   const std::size_t count = hierarchy.levels.size();
   for (std::size_t h = 0; h < count; ++h) {
-    levels_.push_back(std::make_unique<Level>(hierarchy.levels[h], h + 1 == count));
+    levels_.push_back(std::make_unique<Level>(hierarchy.levels[h], params, h + 1 == count));
     if (h + 1 == count) break;
     const LatticeLevel& fine = hierarchy.levels[h];
     const BlockPattern& coarse = hierarchy.levels[h + 1].pattern;
@@ -107,7 +108,7 @@ void Cycle<Scalar>::apply(const NodeVector<double>& r, double r_norm, NodeVector
 template <typename Scalar>
 const NodeVector<Scalar>& Cycle<Scalar>::find_residual_of_result() {
   Level& finest = *levels_.front();
-  finest.smoother->find_swept_residual(finest.x, finest.r, threads_);
+  finest.smoother->find_smoothed_residual(finest.b, finest.x, finest.r, threads_);
   return finest.r;
 }
 

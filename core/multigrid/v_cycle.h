@@ -1,7 +1,7 @@
 /// One multigrid cycle in float or double: V on the finest level, V or W below, Cholesky on the last.
 ///
-/// The cycle is a symmetric operator (symmetric sweeps, R and its transpose), so it can precondition conjugate
-/// gradients.
+/// The cycle is a symmetric operator (adjoint smoothing before and after, R and its transpose), so it can precondition
+/// conjugate gradients.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,8 @@ class Cycle {
   NodeVector<Scalar>& right_side() { return levels_.front()->b; }
   const NodeVector<Scalar>& result() const { return levels_.front()->x; }
   void run() { cycle(0); }
-  /// right_side() - A result() right after run(), for half a product.
+  /// right_side() - A result() right after run(), for half a product by Gauss-Seidel and a whole one by other
+  /// smoothers.
   const NodeVector<Scalar>& find_residual_of_result();
 
   /// Bytes of level h: matrix, smoother, vectors, product plan, factors.
@@ -53,7 +54,7 @@ class Cycle {
 
  private:
   struct Level {
-    Level(const LatticeLevel& structure, bool last);
+    Level(const LatticeLevel& structure, const MultigridParams& params, bool last);
     const LatticeLevel& structure;
     BlockMatrix<Scalar> matrix;
     NodeVector<Scalar> b, x, r, correction;

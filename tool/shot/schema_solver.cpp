@@ -107,6 +107,27 @@ const Table<Shot>& solver_table() {
                                     {"stream", GalerkinMethod::Stream},
                                     {"naive", GalerkinMethod::Naive}}),
             "", "How coarse matrices are formed; all give the same up to round-off.")
+        .add(
+            "method", [](auto& s) -> auto& { return s.solver.multigrid.method; },
+            choice<SolveMethod>({{"cg", SolveMethod::ConjugateGradients}, {"cycles", SolveMethod::Cycles}}), "",
+            "Conjugate gradients preconditioned by a multigrid cycle, or the cycles alone, as in the paper.")
+        .add(
+            "cycle", [](auto& s) -> auto& { return s.solver.multigrid.coarse_cycle; },
+            choice<CycleKind>({{"w", CycleKind::W}, {"v", CycleKind::V}}), "", "Shape of a multigrid cycle.")
+        .add(
+            "smoother", [](auto& s) -> auto& { return s.solver.multigrid.smoother; },
+            choice<SmootherKind>({{"gauss_seidel", SmootherKind::GaussSeidel},
+                                  {"one_way_gauss_seidel", SmootherKind::OneWayGaussSeidel},
+                                  {"chebyshev", SmootherKind::Chebyshev}}),
+            "",
+            "Before and after coarse corrections: Gauss-Seidel forward and backward, or forward before and backward "
+            "after (the paper's), or a Chebyshev polynomial.")
+        .add(
+            "sweeps", [](auto& s) -> auto& { return s.solver.multigrid.sweeps; }, whole<int>(1, 100), "",
+            "Of the smoother, before and after each coarse correction.")
+        .add(
+            "chebyshev_degree", [](auto& s) -> auto& { return s.solver.multigrid.chebyshev_degree; },
+            whole<int>(1, 100), "", "Of the polynomial, where that is the smoother.")
         .add("threads", &Shot::threads, whole<int>(0, 4096), "", "0: all processors. Results do not depend on it.");
     t.check = [](const Place& place, const TomlValue& value, Shot& shot) {
       check_newmark(place, value, shot.solver.newmark);

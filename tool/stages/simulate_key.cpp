@@ -6,7 +6,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give other frames.
-constexpr const char* kSimulationVersion = "simulation 5";
+constexpr const char* kSimulationVersion = "simulation 6";
 
 void add(KeyHasher& key, const Transform& t) {
   key.add(t.translate).add(t.rotate).add(t.scale);
@@ -55,7 +55,9 @@ StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraint
                         shot.settings.start == StartState::Equilibrium || linearization(solver) == Linearize::Iterated;
   if (balances) key.add(solver.max_newton_iterations);
   if (balances || solver.rest_tolerance > 0) key.add(solver.force_tolerance);
-  key.add(solver.multigrid.galerkin);
+  const MultigridParams& multigrid = solver.multigrid;
+  key.add(multigrid.galerkin).add(multigrid.method).add(multigrid.coarse_cycle).add(multigrid.smoother);
+  key.add(multigrid.sweeps).add(multigrid.chebyshev_degree);
   for (const Pin& pin : constraints.pins) key.add(pin.points);
   for (const Pull& pull : constraints.pulls) key.add(pull.points).add(pull.weights).add(pull.max_force);
   return key.key();

@@ -1,12 +1,13 @@
-// Smoother, bottom solver and cycle: what conjugate gradients need of a preconditioner.
+// Bottom solver and cycle: what conjugate gradients need of a preconditioner.
 #include <cstdlib>
-#include <random>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "core/multigrid/gauss_seidel.h"
 #include "core/multigrid/v_cycle.h"
+#include "tests/core/multigrid/finest_level.h"
 #include "tests/support/elastic_box.h"
 
 namespace softreel {
@@ -14,79 +15,9 @@ namespace {
 
 using test_support::assemble;
 using test_support::ElasticSystem;
+using test_support::Finest;
 using test_support::make_box;
-
-NodeVector<double> random_vector(Index nodes, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> value(-1, 1);
-  NodeVector<double> vector(static_cast<std::size_t>(4 * nodes), 0);
-  for (std::size_t k = 0; k < vector.size(); ++k)
-    if (k % 4 < 3) vector[k] = value(random);
-  return vector;
-}
-
-/// The finest level of a clamped box, in double, stored as a level.
-struct Finest {
-  Finest()
-      : mesh(make_box({4, 3, 3}, 0.5)),
-        system(assemble(mesh, {}, [](const Vec3& x) { return x[0] < 1e-9; })),
-        hierarchy(build_lattice_hierarchy(mesh, {}, system.matrix.pattern, {})) {
-    matrix.pattern = hierarchy.levels[0].pattern;
-    reserve_values(matrix);
-    for (std::size_t b = 0; b < hierarchy.source_blocks.size(); ++b)
-      std::copy_n(system.matrix.block(hierarchy.source_blocks[b]), 9, matrix.values.data() + 9 * b);
-  }
-  TetMesh mesh;
-  ElasticSystem system;
-  LatticeHierarchy hierarchy;
-  BlockMatrixd matrix;
-};
-
-TEST(Smoother, ReturnsTheResidualOfItsResult) {
-  Finest finest;
-  const Threads threads(1);
-  Smoother<double> smoother(finest.hierarchy.levels[0], finest.matrix);
-  ASSERT_TRUE(smoother.update(threads));
-  const NodeVector<double> b = random_vector(finest.matrix.pattern.rows(), 1);
-  for (const int sweeps : {1, 3}) {
-    NodeVector<double> x(b.size(), 0), r(b.size(), 0), expected(b.size(), 0);
-    smoother.smooth_from_zero(sweeps, b, x, r, threads);
-    smoother.find_residual(b, x, expected, threads);
-    for (std::size_t k = 0; k < b.size(); ++k) EXPECT_NEAR(k % 4 < 3 ? r[k] : 0, k % 4 < 3 ? expected[k] : 0, 1e-12);
-  }
-}
-
-TEST(Smoother, FromZeroEqualsTheGeneralSweepFromZero) {
-  Finest finest;
-  const Threads threads(1);
-  Smoother<double> smoother(finest.hierarchy.levels[0], finest.matrix);
-  ASSERT_TRUE(smoother.update(threads));
-  const NodeVector<double> b = random_vector(finest.matrix.pattern.rows(), 2);
-  NodeVector<double> x(b.size(), 0), y(b.size(), 0), r(b.size(), 0);
-  smoother.smooth_from_zero(1, b, x, r, threads);
-  smoother.smooth(1, b, y, threads);
-  EXPECT_EQ(x, y);
-}
-
-TEST(Smoother, LeavesTheSolutionAlone) {
-  Finest finest;
-  const Threads threads(1);
-  Smoother<double> smoother(finest.hierarchy.levels[0], finest.matrix);
-  ASSERT_TRUE(smoother.update(threads));
-  const NodeVector<double> exact = random_vector(finest.matrix.pattern.rows(), 3), zero(exact.size(), 0);
-  NodeVector<double> b(exact.size(), 0), x = exact;
-  smoother.find_residual(zero, exact, b, threads);
-  for (double& value : b) value = -value;
-  smoother.smooth(1, b, x, threads);
-  for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], exact[k], 1e-12);
-}
-
-TEST(Smoother, RefusesABlockThatIsNotPositive) {
-  Finest finest;
-  finest.matrix.block(finest.hierarchy.levels[0].diagonal[5])[4] = -1;
-  Smoother<double> smoother(finest.hierarchy.levels[0], finest.matrix);
-  EXPECT_FALSE(smoother.update(Threads(1)));
-}
+using test_support::random_vector;
 
 /// A full matrix of nodes as a level.
 BlockMatrixd block_matrix(const Eigen::MatrixXd& dense) {
@@ -113,7 +44,8 @@ TEST(CoarseSolver, SolvesASparseMatrixWithinItsEnvelope) {
   const NodeVector<double> b = random_vector(finest.matrix.pattern.rows(), 4);
   NodeVector<double> x(b.size(), 0), r(b.size(), 0);
   solver.solve(b, x);
-  Smoother<double>(finest.hierarchy.levels[0], finest.matrix).find_residual(b, x, r, Threads(1));
+  GaussSeidel<double>(finest.hierarchy.levels[0], finest.matrix, SweepDirections::Both)
+      .find_residual(b, x, r, Threads(1));
   for (std::size_t k = 0; k < b.size(); ++k) EXPECT_NEAR(k % 4 < 3 ? r[k] : 0, 0, 1e-10);
 }
 
@@ -167,10 +99,16 @@ Eigen::MatrixXd dense_cycle(const TetMesh& mesh, const ElasticSystem& system, co
 TEST(Cycle, IsSymmetricAndPositiveAndLeavesPinsAtZero) {
   const TetMesh mesh = make_box({6, 3, 3}, 0.5);
   const ElasticSystem system = assemble(mesh, {}, [](const Vec3& x) { return x[0] < 1e-9; });
-  for (const CycleKind kind : {CycleKind::V, CycleKind::W}) {
+  const std::pair<CycleKind, SmootherKind> choices[] = {{CycleKind::V, SmootherKind::GaussSeidel},
+                                                        {CycleKind::W, SmootherKind::GaussSeidel},
+                                                        {CycleKind::V, SmootherKind::OneWayGaussSeidel},
+                                                        {CycleKind::W, SmootherKind::OneWayGaussSeidel},
+                                                        {CycleKind::W, SmootherKind::Chebyshev}};
+  for (const auto& [kind, smoother] : choices) {
     MultigridParams params;
     params.bottom_nodes = 20;
     params.coarse_cycle = kind;
+    params.smoother = smoother;
     const Eigen::MatrixXd M = dense_cycle(mesh, system, params);
     EXPECT_LE((M - M.transpose()).norm(), 1e-12 * M.norm());
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)

@@ -184,6 +184,11 @@ force_tolerance = 1e-7
 max_iterations = 300
 max_newton_iterations = 100
 galerkin = "stream"
+method = "cycles"
+cycle = "v"
+smoother = "chebyshev"
+sweeps = 2
+chebyshev_degree = 3
 threads = 3
 
 [camera]

@@ -1,0 +1,43 @@
+// CHOLMOD's supernodal Cholesky factorisation, by Eigen's wrapper. Its speed is that of the BLAS behind it.
+#include <stdexcept>
+
+#include <Eigen/CholmodSupport>
+#include <dlfcn.h>
+
+#include "tests/benchmark/rivals/rival.h"
+
+namespace softreel::rivals {
+namespace {
+
+/// OpenBLAS, where it is the BLAS, takes all processors unless it is told; the reference BLAS knows one.
+void set_blas_threads(int threads) {
+  using SetThreads = void (*)(int);
+  if (const auto set = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) set(threads);
+}
+
+class Cholmod : public Rival {
+ public:
+  explicit Cholmod(const ScalarSystem& system) : system_(system) { solver_.analyzePattern(system.matrix); }
+  const char* name() const override { return "cholmod"; }
+  void update() override {
+    solver_.factorize(system_.matrix);
+    if (solver_.info() != Eigen::Success) throw std::runtime_error("cholmod: the factorisation failed");
+  }
+  int solve(double, Eigen::VectorXd& x) override {
+    x = solver_.solve(system_.load);
+    return 0;
+  }
+
+ private:
+  const ScalarSystem& system_;
+  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> solver_;
+};
+
+}  // namespace
+
+std::unique_ptr<Rival> make_cholmod(const ScalarSystem& system, int threads) {
+  set_blas_threads(threads);
+  return std::make_unique<Cholmod>(system);
+}
+
+}  // namespace softreel::rivals

@@ -1,0 +1,13 @@
+// Stands in for cholmod_rival.cpp where CHOLMOD is not installed.
+#include <fmt/format.h>
+
+#include "tests/benchmark/rivals/rival.h"
+
+namespace softreel::rivals {
+
+std::unique_ptr<Rival> make_cholmod(const ScalarSystem&, int) {
+  fmt::print(stderr, "solver_rivals: cholmod is left out: it was not found at build time (libsuitesparse-dev)\n");
+  return nullptr;
+}
+
+}  // namespace softreel::rivals

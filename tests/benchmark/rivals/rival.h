@@ -1,0 +1,44 @@
+/// Other people's solvers behind one interface, to be measured beside softreel's. None of them enters the product.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "core/base/types.h"
+#include "tests/benchmark/bar_problem.h"
+
+namespace softreel::rivals {
+
+/// The system without its pinned nodes, as scalars: nobody pays for rows that say u = 0.
+struct ScalarSystem {
+  Eigen::SparseMatrix<double> matrix;  ///< both halves, columns compressed
+  Eigen::VectorXd load;
+  std::vector<Vec3> positions;    ///< rest position of each free node, m: the near-null space of multigrid
+  std::vector<Index> mesh_nodes;  ///< mesh node of each free node
+};
+
+ScalarSystem make_scalar_system(const benchmark_support::LinearSystem& system, std::span<const Vec3> rest_positions);
+
+/// One solver on one system. Everything that new values on the same pattern leave as it is, is made in the constructor.
+class Rival {
+ public:
+  virtual ~Rival() = default;
+  virtual const char* name() const = 0;
+  /// Takes the system's values again: what a time step pays before it can solve.
+  virtual void update() = 0;
+  /// Solves to |b - A x| <= tolerance |b| from x = 0; returns the iterations, 0 for a direct solver.
+  virtual int solve(double tolerance, Eigen::VectorXd& x) = 0;
+};
+
+/// All keep the system by reference. Failures throw std::runtime_error.
+std::unique_ptr<Rival> make_eigen_ldlt(const ScalarSystem& system);
+std::unique_ptr<Rival> make_eigen_cg_diagonal(const ScalarSystem& system);
+std::unique_ptr<Rival> make_eigen_cg_ic(const ScalarSystem& system);
+/// Null, with a line on stderr, where the library was not found when the benchmark was built.
+std::unique_ptr<Rival> make_cholmod(const ScalarSystem& system, int threads);
+std::unique_ptr<Rival> make_petsc_gamg(const ScalarSystem& system);
+
+}  // namespace softreel::rivals

@@ -1,0 +1,139 @@
+// Meshes that no lattice made, as they come from a file: the hierarchy still covers them.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/multigrid/lattice_hierarchy.h"
+#include "core/multigrid/multigrid.h"
+#include "tests/support/bcc_bar.h"
+#include "tests/support/elastic_box.h"
+
+namespace softreel {
+namespace {
+
+using test_support::assemble;
+using test_support::ElasticParams;
+using test_support::ElasticSystem;
+using test_support::make_box;
+
+/// Iterations to 1e-6 of a mesh clamped where x < edge.
+int iterations(const TetMesh& mesh, double seconds, double edge = 1e-9, int axis = 0) {
+  ElasticParams params;
+  params.seconds = seconds;
+  const ElasticSystem system = assemble(mesh, params, [&](const Vec3& x) { return x[axis] < edge; });
+  const Threads threads(1);
+  Multigrid multigrid(mesh, {}, system.matrix.pattern, {}, threads);
+  multigrid.update(system.matrix, system.pinned);
+  std::vector<Vec3> x(mesh.nodes.size(), Vec3::Zero());
+  const SolveReport report = multigrid.solve(system.matrix, system.load, x, 1e-6, 0, 400);
+  EXPECT_EQ(report.status, SolveStatus::Converged);
+  EXPECT_FALSE(report.double_cycle);
+  EXPECT_LE(test_support::relative_residual(system.matrix, system.load, x), 1.01e-6);
+  return report.iterations;
+}
+
+TetMesh without_lattice(TetMesh mesh) {
+  mesh.lattice = {};
+  return mesh;
+}
+
+double volume(const TetMesh& mesh, const Tet& tet) {
+  const auto at = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(tet[k])]; };
+  return tet_volume(at(0), at(1), at(2), at(3));
+}
+
+/// Moves inner nodes at random by up to `reach` as long as no tetrahedron shrinks below `least` of its volume.
+TetMesh shaken(TetMesh mesh, double reach, double least) {
+  const Index nodes = static_cast<Index>(mesh.nodes.size());
+  std::vector<std::vector<std::size_t>> around(static_cast<std::size_t>(nodes));
+  std::vector<double> limit;
+  Vec3 low = mesh.nodes[0], high = low;
+  for (const Vec3& x : mesh.nodes) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    limit.push_back(least * volume(mesh, mesh.tets[e]));
+    for (const Index node : mesh.tets[e]) around[static_cast<std::size_t>(node)].push_back(e);
+  }
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> step(-reach, reach);
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    const Vec3 old = mesh.nodes[i], move(step(random), step(random), step(random));
+    if (((old - low).array() < 1e-9).any() || ((high - old).array() < 1e-9).any()) continue;
+    mesh.nodes[i] += move;
+    for (const std::size_t e : around[i])
+      if (volume(mesh, mesh.tets[e]) < limit[e]) mesh.nodes[i] = old;
+  }
+  return mesh;
+}
+
+/// A bar that tapers from 1 to 1 / ratio, with tetrahedra in proportion: graded in size, not in shape.
+TetMesh tapered(const TetMesh& bar, double ratio) {
+  TetMesh mesh = bar;
+  const double k = std::log(ratio);
+  for (Vec3& x : mesh.nodes) {
+    const double scale = std::exp(-k * x[0]);
+    x = Vec3((1 - scale) / k, scale * (x[1] - 0.125), scale * (x[2] - 0.125));
+  }
+  mesh.lattice = {};
+  return mesh;
+}
+
+TEST(ForeignMesh, HasLevelsThatShrinkLikeThoseOfALattice) {
+  for (const TetMesh& mesh :
+       {without_lattice(testing::kuhn_bar({32, 8, 8}, Vec3(1, 0.25, 0.25))), tapered(test_support::make_bar(8), 8)}) {
+    const auto nodes = static_cast<Index>(mesh.nodes.size());
+    MultigridParams params;
+    params.bottom_nodes = 40;
+    const LatticeHierarchy hierarchy = build_lattice_hierarchy(mesh, {}, stiffness_pattern(mesh.tets, nodes), params);
+    ASSERT_GE(hierarchy.levels.size(), 3u);
+    for (std::size_t h = 0; h + 1 < hierarchy.levels.size(); ++h) {
+      const WeightMatrix& P = hierarchy.levels[h].prolongation;
+      EXPECT_LE(P.columns, 0.7 * P.rows());
+      for (std::size_t i = 0; i < static_cast<std::size_t>(P.rows()); ++i)
+        EXPECT_GT(P.row_offsets[i + 1], P.row_offsets[i]) << "a node of level " << h << " is not covered";
+    }
+  }
+}
+
+TEST(ForeignMesh, FindsTheLatticeOfALatticeMeshAgain) {
+  const TetMesh mesh = test_support::make_bar(6);
+  for (const double seconds : {0.0, 1.0 / 96})
+    EXPECT_EQ(iterations(without_lattice(mesh), seconds), iterations(mesh, seconds));
+}
+
+TEST(ForeignMesh, TakesAboutTheIterationsOfALatticeMesh) {
+  struct Mesh {
+    const char* name;
+    TetMesh mesh;
+    double dynamic, still;  ///< times the iterations of the lattice mesh
+  };
+  const TetMesh kuhn = without_lattice(testing::kuhn_bar({32, 8, 8}, Vec3(1, 0.25, 0.25)));
+  const Mesh meshes[] = {{"Kuhn", kuhn, 1.2, 1.6},
+                         {"Kuhn, shaken", shaken(kuhn, 0.01, 0.1), 1.3, 1.8},
+                         {"slivers of 1 % of the volume", shaken(kuhn, 0.015, 0.01), 1.7, 2.4},
+                         {"graded 8 to 1", tapered(test_support::make_bar(6), 8), 1.7, 1.6}};
+  const int dynamic = iterations(test_support::make_bar(6), 1.0 / 96), still = iterations(test_support::make_bar(6), 0);
+  for (const Mesh& m : meshes) {
+    EXPECT_LE(iterations(m.mesh, 1.0 / 96), m.dynamic * dynamic) << m.name;
+    EXPECT_LE(iterations(m.mesh, 0), m.still * still) << m.name;
+  }
+}
+
+TEST(ForeignMesh, TakesForTwoLegsAboutTheIterationsOfOne) {
+  // Legs of 4 x 4 cubes, one coarse cell apart, joined by nothing but the top.
+  for (const bool lattice : {true, false})
+    for (const double seconds : {0.0, 1.0 / 96}) {
+      TetMesh one = make_box({4, 4, 20}, 0.05);
+      TetMesh two = make_box({10, 4, 20}, 0.05, [](Index x, Index, Index z) { return x < 4 || x > 5 || z > 17; });
+      if (!lattice) one.lattice = two.lattice = {};
+      EXPECT_LE(iterations(two, seconds, 1e-9, 2), 1.2 * iterations(one, seconds, 1e-9, 2));
+    }
+}
+
+}  // namespace
+}  // namespace softreel
