@@ -1,6 +1,7 @@
 #include "core/multigrid/v_cycle.h"
 
 #include <limits>
+#include <type_traits>
 
 #include "core/base/check.h"
 #include "core/sparse/galerkin_product.h"
@@ -8,9 +9,11 @@
 namespace softreel {
 namespace {
 
-/// Relative size of a pivot of the bottom that is nothing but rounding of the cycle's precision.
+/// Relative size of a pivot of the bottom that is nothing but rounding. In double it is far above that of one pivot:
+/// copies of coarse nodes at scattered contrasts depend on each other, and a pivot that is noise, but taken for true,
+/// makes greater noise of all that follow. A true pivot so small belongs to a body that double cannot solve anyway.
 template <typename Scalar>
-constexpr double kPivotNoise = 8.0 * std::numeric_limits<Scalar>::epsilon();
+constexpr double kPivotNoise = std::is_same_v<Scalar, float> ? 8.0 * std::numeric_limits<float>::epsilon() : 1e-11;
 
 }  // namespace
 

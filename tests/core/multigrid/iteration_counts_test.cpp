@@ -102,9 +102,8 @@ TEST(IterationCounts, OfAMillionFoldContrastInBlocksThatTouchByEdgesStayWithinFo
     EXPECT_LE(iterations(mesh, 0.3, seconds, {}, factor), 4 * iterations(mesh, 0.3, seconds));
 }
 
-TEST(IterationCounts, OfAHundredFoldContrastInRandomElementsStayWithinThreeFoldWithoutCopies) {
-  // Copies of coarse nodes at random contrasts are dependent on each other, and the bottom may be refused. A
-  // million-fold contrast is a linkage of stiff tetrahedra hinged at nodes, whose soft mechanisms no coarse lattice
+TEST(IterationCounts, OfAHundredFoldContrastInRandomElementsStayWithinThreeFold) {
+  // A million-fold contrast is a linkage of stiff tetrahedra hinged at nodes, whose soft mechanisms no coarse lattice
   // carries: that takes hundreds of iterations (see the benchmark).
   const TetMesh mesh = bar(4, 6);
   std::mt19937 random(7);
@@ -112,8 +111,10 @@ TEST(IterationCounts, OfAHundredFoldContrastInRandomElementsStayWithinThreeFoldW
   for (double& f : factor) f = std::min(f, 100.0);
   MultigridParams no_copies;
   no_copies.stiffness_contrast = 1e9;
+  // Copies of coarse nodes at so many contrasts nearly depend on each other, which the bottom has to bear.
   for (const double seconds : kSteps)
-    EXPECT_LE(iterations(mesh, 0.3, seconds, no_copies, factor), 3 * iterations(mesh, 0.3, seconds));
+    for (const MultigridParams& params : {no_copies, MultigridParams()})
+      EXPECT_LE(iterations(mesh, 0.3, seconds, params, factor), 3 * iterations(mesh, 0.3, seconds));
 }
 
 }  // namespace
