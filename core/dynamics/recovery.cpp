@@ -1,7 +1,6 @@
 #include "core/dynamics/recovery.h"
 
 #include <algorithm>
-#include <limits>
 
 #include <Eigen/LU>
 
@@ -20,22 +19,25 @@ bool is_held(const HeldBody& held, const Tet& tet) {
                      [&](Index node) { return held.nodes[static_cast<std::size_t>(node)] != 0; });
 }
 
-void add_one(std::uint16_t& steps) {
-  if (steps < std::numeric_limits<std::uint16_t>::max()) ++steps;
+/// Far above every threshold, and a float still counts shares of a step there.
+constexpr float kMostSteps = 65536;
+
+void add(float pace, float& steps) {
+  steps = std::min(kMostSteps, steps + pace);
 }
 
-void take_one(std::uint16_t& steps) {
-  if (steps > 0) --steps;
+void take(float pace, float& steps) {
+  steps = std::max(0.0F, steps - pace);
 }
 
 /// 1 per element that is inverted or in a ring wound twice; on the way, which elements are watched.
 std::vector<std::uint8_t> find_bad(const ElasticBody& body, std::span<const Vec3> positions, const HeldBody& held,
-                                   ElementTroubles& troubles) {
+                                   float pace, ElementTroubles& troubles) {
   std::vector<std::uint8_t> bad(troubles.size(), 0);
   std::vector<Index> suspects;
   for (std::size_t e = 0; e < troubles.size(); ++e) {
     const double volume = relative_volume(body, positions, e);
-    take_one(troubles[e].watched);
+    take(pace, troubles[e].watched);
     if (volume < kFlatVolume) troubles[e].watched = kStepsToWatch;
     if (troubles[e].watched > 0) suspects.push_back(static_cast<Index>(e));
     bad[e] = volume < 0 && !is_held(held, body.tets[e]);
@@ -55,7 +57,7 @@ std::vector<int> find_seeds(const ElementTroubles& troubles, const std::vector<s
     const ElementTrouble& trouble = troubles[e];
     if (trouble.bad_steps < kStepsToTrouble) continue;
     if (may_give_up[e] != 0 && trouble.shared_steps >= kStepsToGiveUp) continue;
-    rings[e] = 2 + (trouble.bad_steps - kStepsToTrouble) / kStepsPerRing;
+    rings[e] = 2 + static_cast<int>((trouble.bad_steps - kStepsToTrouble) / kStepsPerRing);
   }
   return rings;
 }
@@ -92,19 +94,20 @@ std::vector<std::uint8_t> find_held_pieces(const ElasticBody& body, const HeldBo
 }  // namespace
 
 void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, std::int64_t flat, const HeldBody& held,
-                    ElementTroubles& troubles, RecoveryReport& report) {
+                    double seconds, ElementTroubles& troubles, RecoveryReport& report) {
   if (flat == 0 && troubles.empty()) return;
   troubles.resize(body.tets.size());
-  const std::vector<std::uint8_t> bad = find_bad(body, positions, held, troubles),
+  const auto pace = static_cast<float>(std::min(1.0, seconds / kPaceSeconds));
+  const std::vector<std::uint8_t> bad = find_bad(body, positions, held, pace, troubles),
                                   may_give_up = find_held_pieces(body, held);
   for (std::size_t e = 0; e < bad.size(); ++e) {
     ElementTrouble& trouble = troubles[e];
-    take_one(trouble.sharing);
+    take(pace, trouble.sharing);
     if (bad[e] != 0)
-      add_one(trouble.bad_steps);
+      add(pace, trouble.bad_steps);
     else
       trouble.bad_steps = 0;
-    if (bad[e] == 0 && trouble.sharing == 0) take_one(trouble.shared_steps);
+    if (bad[e] == 0 && trouble.sharing == 0) take(pace, trouble.shared_steps);
   }
   std::vector<int> rings = find_seeds(troubles, may_give_up);
   grow(body, rings);
@@ -112,8 +115,10 @@ void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, st
     ElementTrouble& trouble = troubles[e];
     if (rings[e] > 0) trouble.sharing = kStepsToShare;
     if (trouble.sharing == 0) continue;
-    add_one(trouble.shared_steps);
-    if (bad[e] != 0 && may_give_up[e] != 0 && trouble.shared_steps == kStepsToGiveUp) ++report.given_up;
+    const bool had_hope = trouble.shared_steps < kStepsToGiveUp;
+    add(pace, trouble.shared_steps);
+    const bool hopeless = had_hope && trouble.shared_steps >= kStepsToGiveUp;
+    if (bad[e] != 0 && may_give_up[e] != 0 && hopeless) ++report.given_up;
   }
   if (std::all_of(troubles.begin(), troubles.end(), [](const ElementTrouble& t) { return t == ElementTrouble{}; }))
     troubles = {};

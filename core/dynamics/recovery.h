@@ -15,7 +15,10 @@
 
 namespace softreel {
 
-/// When recovery acts, in steps and in rings of elements that share a node. The numbers are those of a prototype.
+/// When recovery acts, in steps and in rings of elements that share a node. The numbers are those of a prototype, whose
+/// steps were of kPaceSeconds: shorter ones count as their share of one, as what lasts for some milliseconds is no
+/// tangle.
+inline constexpr double kPaceSeconds = 1.0 / 96;
 inline constexpr int kStepsToTrouble = 6;   ///< an element inverted or wound for so long is in trouble
 inline constexpr int kStepsToShare = 8;     ///< that it and its neighbourhood then share a rotation
 inline constexpr int kStepsPerRing = 12;    ///< of lasting trouble, after which the neighbourhood grows by a ring
@@ -24,10 +27,10 @@ inline constexpr int kStepsToGiveUp = 150;  ///< of sharing that an element of a
 
 /// What recovery knows of one element; all zero for one that was well for long.
 struct ElementTrouble {
-  std::uint16_t bad_steps = 0;     ///< in a row: inverted or wound
-  std::uint16_t shared_steps = 0;  ///< with a shared rotation; forgotten one by one while it is well
-  std::uint16_t sharing = 0;       ///< steps left to share
-  std::uint16_t watched = 0;       ///< steps left to look at its rings
+  float bad_steps = 0;     ///< in a row: inverted or wound
+  float shared_steps = 0;  ///< with a shared rotation; forgotten one by one while it is well
+  float sharing = 0;       ///< steps left to share
+  float watched = 0;       ///< steps left to look at its rings
   bool operator==(const ElementTrouble&) const = default;
 };
 
@@ -48,10 +51,11 @@ struct HeldBody {
   const Pieces& all_pieces;
 };
 
-/// Counts one step at `positions`. Elements of which every node is held are never in trouble: nothing can mend them.
-/// flat: find_rotations_and_flat's; nothing is looked at while it is 0 and `troubles` is empty. Sets given_up.
+/// Counts one step of `seconds` at `positions`. Elements of which every node is held are never in trouble: nothing can
+/// mend them. flat: find_rotations_and_flat's; nothing is looked at while it is 0 and `troubles` is empty. Sets
+/// given_up.
 void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, std::int64_t flat, const HeldBody& held,
-                    ElementTroubles& troubles, RecoveryReport& report);
+                    double seconds, ElementTroubles& troubles, RecoveryReport& report);
 
 /// Gives the elements with steps left to share the rotation nearest to the sum of V F over their patch. rotations:
 /// those of the elements alone in, results out; guesses: those of the step before, for ties. Sets elements and patches.

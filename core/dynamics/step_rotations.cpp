@@ -41,7 +41,8 @@ RecoveryReport find_step_rotations(Simulator::Parts& parts, double frame, StepWo
       find_rotations_and_flat(parts.body, parts.params.rotation, positions, work.rotations, parts.threads);
   if (flat == 0 && work.troubles.empty()) return report;
   const std::vector<std::uint8_t> held_pieces = parts.held_pieces(work.pinned, work.pulls);
-  count_troubles(parts.body, positions, flat, {work.pinned.held, held_pieces, parts.pieces}, work.troubles, report);
+  count_troubles(parts.body, positions, flat, {work.pinned.held, held_pieces, parts.pieces}, work.step.h, work.troubles,
+                 report);
   share_rotations(parts.body, positions, work.troubles, parts.state.rotations, work.rotations, report);
   log_recovery(parts, frame, report);
   return report;

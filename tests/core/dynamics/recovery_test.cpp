@@ -150,7 +150,7 @@ struct Watched {
       if ((positions[i] - Vec3(0.1, 0.1, 0.1)).norm() < 1e-9) positions[i].x() += 0.15;
   }
 
-  RecoveryReport look(int times) {
+  RecoveryReport look(int times, double seconds = kPaceSeconds) {
     RecoveryReport report;
     for (int k = 0; k < times; ++k) {
       std::vector<Quaternion> rotations(body.tets.size(), Quaternion::Identity());
@@ -158,7 +158,7 @@ struct Watched {
       const std::int64_t flat =
           find_rotations_and_flat(body, RotationMethod::Consistent, positions, rotations, threads);
       report = {};
-      count_troubles(body, positions, flat, {held_nodes, held_pieces, pieces}, troubles, report);
+      count_troubles(body, positions, flat, {held_nodes, held_pieces, pieces}, seconds, troubles, report);
       given_up += report.given_up;
     }
     return report;
@@ -188,6 +188,18 @@ TEST(CountTroubles, TakesANeighbourhoodThatGrowsARingEveryTwelveSteps) {
   EXPECT_GT(bar.sharing(), one_ring);
   bar.look(8 * kStepsPerRing);
   EXPECT_EQ(bar.sharing(), static_cast<Index>(bar.mesh.tets.size()));
+}
+
+TEST(CountTroubles, CountsShortStepsByTheirTimeAndLongOnesAsOne) {
+  Watched by_short, by_long;
+  by_short.look(4 * kStepsToTrouble - 1, kPaceSeconds / 4);
+  EXPECT_EQ(by_short.sharing(), 0);
+  by_short.look(1, kPaceSeconds / 4);
+  EXPECT_GT(by_short.sharing(), 0);
+  by_long.look(kStepsToTrouble - 1, 1);
+  EXPECT_EQ(by_long.sharing(), 0);
+  by_long.look(1, 1);
+  EXPECT_EQ(by_long.sharing(), by_short.sharing());
 }
 
 TEST(CountTroubles, EndsTheSharingEightStepsAfterTheTroubleAndThenForgetsIt) {
