@@ -65,29 +65,35 @@ void add(std::span<const Vec3> a, std::span<const Vec3> b, std::span<Vec3> sum) 
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = a[i] + b[i];
 }
 
-/// What work.change would still lack if the accelerations were those of the last step; empty if they are not known.
-std::vector<Vec3> guess_correction(const Simulator::Parts& parts, const StepWork& work) {
-  const std::vector<Vec3>& accelerations = parts.state.accelerations;
-  std::vector<Vec3> guess(accelerations.size());
-  for (std::size_t i = 0; i < guess.size(); ++i)
-    guess[i] = work.pinned.held[i] != 0 ? Vec3(Vec3::Zero())
-                                        : Vec3(work.step.seconds.velocity * accelerations[i] - work.change[i]);
-  return guess;
+/// What work.change may still lack, up to factors: the motion goes on as in the last step, and as it changed there.
+/// Empty vectors where nothing is known.
+struct Guesses {
+  std::vector<Vec3> correction, difference;
+};
+
+Guesses guess_corrections(const Simulator::Parts& parts, const StepWork& work) {
+  const std::vector<Vec3>&last = parts.state.accelerations, &before = parts.state.previous_accelerations;
+  const double t = work.step.seconds.velocity;
+  Guesses guesses{std::vector<Vec3>(last.size(), Vec3::Zero()), std::vector<Vec3>(before.size(), Vec3::Zero())};
+  for (std::size_t i = 0; i < last.size(); ++i)
+    if (work.pinned.held[i] == 0) guesses.correction[i] = t * last[i] - work.change[i];
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (work.pinned.held[i] == 0) guesses.difference[i] = t * (last[i] - before[i]);
+  return guesses;
 }
 
 /// Corrections in float until the residual meets `target`. residual: that of work.change.
 SolveReport refine(Simulator::Parts& parts, StepWork& work, double target, std::vector<Vec3>& residual) {
   SolveReport report;
-  const std::vector<Vec3> guess = guess_correction(parts, work);
-  const std::span<const Vec3> guesses[] = {guess};
   std::vector<Vec3> correction(residual.size()), velocities;
   for (int round = 0; round < kMostRounds; ++round) {
     const double before = norm(residual);
     report.residual = before;
     if (before <= target) return report;
-    const FloatCorrection found =
-        parts.multigrid.correct_in_float(residual, target, parts.params.max_iterations - report.iterations, correction,
-                                         round == 0 && !guess.empty() ? guesses : std::span<const std::span<const Vec3>>());
+    const Guesses guesses = round == 0 ? guess_corrections(parts, work) : Guesses{};
+    const std::span<const Vec3> directions[] = {guesses.correction, guesses.difference};
+    const FloatCorrection found = parts.multigrid.correct_in_float(
+        residual, target, parts.params.max_iterations - report.iterations, correction, directions);
     report.iterations += found.report.iterations;
     report.status = found.report.status;
     if (!found.report.ok()) return report;

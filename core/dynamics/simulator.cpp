@@ -154,7 +154,8 @@ void Simulator::set_state(SimulationState state) {
   CHECK(state.positions.size() == parts_->nodes());
   CHECK(state.velocities.size() == parts_->nodes());
   CHECK(state.rotations.size() == parts_->body.tets.size());
-  for (const auto* memory : {&state.previous_positions, &state.previous_velocities, &state.accelerations})
+  for (const auto* memory :
+       {&state.previous_positions, &state.previous_velocities, &state.accelerations, &state.previous_accelerations})
     if (!memory->empty()) CHECK(memory->size() == parts_->nodes());
   CHECK((state.troubles.empty() || state.troubles.size() == parts_->body.tets.size()));
   parts_->state = std::move(state);

@@ -73,18 +73,19 @@ struct BodyModel {
   Vec3 gravity = Vec3(0, -9.81, 0);  ///< m/s^2
 };
 
-/// All that changes from step to step: storing it and setting it again continues with the same bits. The last five are
-/// the integrator's memory: empty and 0 before the first step and where it needs none.
+/// All that changes from step to step: storing it and setting it again continues with the same bits. After the
+/// rotations comes what integrator and solver remember: empty and 0 before the first step and where nothing needs it.
 struct SimulationState {
-  std::vector<Vec3> positions;              ///< nodes x 3, m
-  std::vector<Vec3> velocities;             ///< nodes x 3, m/s
-  std::vector<Quaternion> rotations;        ///< per element, warm start of the next extraction
-  std::vector<Vec3> previous_positions{};   ///< BDF2: before the last step, m
-  std::vector<Vec3> previous_velocities{};  ///< BDF2: before the last step, m/s
-  std::vector<Vec3> accelerations{};        ///< Newmark: nodes x 3, m/s^2
-  double previous_error = 0;                ///< error control: of the last step, over the body's size
-  double previous_seconds = 0;              ///< BDF2, Newmark, error control: length of the last step
-  ElementTroubles troubles = {};            ///< of recovery: empty while all is well
+  std::vector<Vec3> positions;                 ///< nodes x 3, m
+  std::vector<Vec3> velocities;                ///< nodes x 3, m/s
+  std::vector<Quaternion> rotations;           ///< per element, warm start of the next extraction
+  std::vector<Vec3> previous_positions{};      ///< BDF2: before the last step, m
+  std::vector<Vec3> previous_velocities{};     ///< BDF2: before the last step, m/s
+  std::vector<Vec3> accelerations{};           ///< nodes x 3, m/s^2: Newmark's, and the next solve's first guess
+  std::vector<Vec3> previous_accelerations{};  ///< before the last step: how the guess changes
+  double previous_error = 0;                   ///< error control: of the last step, over the body's size
+  double previous_seconds = 0;                 ///< BDF2, Newmark, error control: length of the last step
+  ElementTroubles troubles = {};               ///< of recovery: empty while all is well
 };
 
 /// What a step did. If it could not be solved, `culprit` names the element (with its centroid) or constraint to blame.

@@ -185,7 +185,7 @@ void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<cons
   find_step_terms(parts.body,
                   {work.positions, end_velocities, work.rotations, seconds, parts.damping_stiffness, work.offsets},
                   parts.step_terms, parts.threads);
-  gather_step_forces(parts.body.node_elements, parts.step_terms, residual, parts.threads);
+  gather_step_forces(parts.body, parts.step_terms, residual, parts.threads);
   const Vec3 gravity = t * parts.model.gravity;
   for (std::size_t i = 0; i < residual.size(); ++i) {
     residual[i] += parts.masses.mass[i] * gravity - t * parts.masses.damping[i] * work.velocities[i];

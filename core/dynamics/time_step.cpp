@@ -125,6 +125,7 @@ void remember(const SolverParams& params, const TimeStep& step, const Simulation
     after.previous_positions = before.positions;
     after.previous_velocities = before.velocities;
   }
+  after.previous_accelerations = before.accelerations;
   after.accelerations.resize(after.velocities.size());
   for (std::size_t i = 0; i < after.velocities.size(); ++i)
     after.accelerations[i] = held[i] != 0 && params.integrator == Integrator::Newmark

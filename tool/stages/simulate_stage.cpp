@@ -20,6 +20,7 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.previous_positions);
   out.put_array(frame.state.previous_velocities);
   out.put_array(frame.state.accelerations);
+  out.put_array(frame.state.previous_accelerations);
   out.put(frame.state.previous_error);
   out.put(frame.state.previous_seconds);
   out.put_array(frame.state.troubles);
@@ -37,6 +38,7 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
   frame.state.previous_positions = in.get_array<Vec3>();
   frame.state.previous_velocities = in.get_array<Vec3>();
   frame.state.accelerations = in.get_array<Vec3>();
+  frame.state.previous_accelerations = in.get_array<Vec3>();
   frame.state.previous_error = in.get<double>();
   frame.state.previous_seconds = in.get<double>();
   frame.state.troubles = in.get_array<ElementTrouble>();
