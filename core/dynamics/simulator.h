@@ -51,6 +51,9 @@ struct SolverParams {
   /// A body at rest is not stepped: one whose nodes would all move less than this times its size by their velocities,
   /// whose forces balance to force_tolerance and whose pins do not move. 0: every body is stepped.
   double rest_tolerance = 1e-7;
+  /// Within a frame, elements whose matrix would change by less than this times `tolerance` since it was made keep it.
+  double matrix_lag = 0.1;
+  bool keep_hierarchy = true;  ///< within a frame, while iteration counts do not grow; else made anew at every step
   double tolerance = 1e-3;          ///< of the linear solve of a step: |r| / |b|
   double force_tolerance = 1e-6;    ///< statics, iterated steps: |residual force| over the force scale of the body
   int max_iterations = 400;         ///< of one linear solve
@@ -92,9 +95,11 @@ struct SimulationState {
 struct StepReport {
   SolveReport solve;
   int nonlinear_iterations = 1;
-  double error = 0;       ///< estimated, of the positions, over the body's size
-  bool rejected = false;  ///< the error is above the limit: the state was left as it was
-  bool at_rest = false;   ///< nothing was to be done: the state was left as it was
+  double error = 0;             ///< estimated, of the positions, over the body's size
+  bool rejected = false;        ///< the error is above the limit: the state was left as it was
+  bool at_rest = false;         ///< nothing was to be done: the state was left as it was
+  bool kept_hierarchy = false;  ///< the coarse levels are those of an earlier step
+  double kept_rows = 0;         ///< share of the matrix that was left as it was, 0 to 1
   std::string culprit;
   RecoveryReport recovery = {};
   bool ok() const { return solve.ok(); }

@@ -20,7 +20,7 @@ NodeSlabs make_node_slabs(const std::vector<Tet>& tets, std::size_t nodes) {
   slabs.places.resize(4 * kElementLanes * batches);
   slabs.slab_offsets.push_back(0);
   slabs.node_offsets.assign(nodes + 1, 0);
-  std::vector<Index> node_of_sum, own;
+  std::vector<Index> own;
   for (std::size_t first = 0; first < tets.size(); first += kSlabElements) {
     const std::size_t end = std::min(first + kSlabElements, tets.size());
     own.clear();
@@ -34,17 +34,37 @@ NodeSlabs make_node_slabs(const std::vector<Tet>& tets, std::size_t nodes) {
         slabs.places[4 * kElementLanes * (e / kElementLanes) + kElementLanes * k + e % kElementLanes] =
             static_cast<std::uint16_t>(place);
       }
-    node_of_sum.insert(node_of_sum.end(), own.begin(), own.end());
-    slabs.slab_offsets.push_back(static_cast<std::uint32_t>(node_of_sum.size()));
+    slabs.nodes.insert(slabs.nodes.end(), own.begin(), own.end());
+    slabs.slab_offsets.push_back(static_cast<std::uint32_t>(slabs.nodes.size()));
   }
-  CHECK(node_of_sum.size() < std::numeric_limits<std::uint32_t>::max());
-  for (const Index node : node_of_sum) ++slabs.node_offsets[static_cast<std::size_t>(node) + 1];
+  CHECK(slabs.nodes.size() < std::numeric_limits<std::uint32_t>::max());
+  for (const Index node : slabs.nodes) ++slabs.node_offsets[static_cast<std::size_t>(node) + 1];
   for (std::size_t i = 1; i < slabs.node_offsets.size(); ++i) slabs.node_offsets[i] += slabs.node_offsets[i - 1];
-  slabs.node_sums.resize(node_of_sum.size());
+  slabs.node_sums.resize(slabs.nodes.size());
   std::vector<std::uint32_t> next(slabs.node_offsets.begin(), slabs.node_offsets.end() - 1);
-  for (std::size_t s = 0; s < node_of_sum.size(); ++s)
-    slabs.node_sums[next[static_cast<std::size_t>(node_of_sum[s])]++] = static_cast<std::uint32_t>(s);
+  for (std::size_t s = 0; s < slabs.nodes.size(); ++s)
+    slabs.node_sums[next[static_cast<std::size_t>(slabs.nodes[s])]++] = static_cast<std::uint32_t>(s);
+  slabs.nodes.shrink_to_fit();
   return slabs;
+}
+
+std::vector<std::uint8_t> nodes_of_slabs(const NodeSlabs& slabs, std::span<const std::uint8_t> chosen) {
+  CHECK(chosen.size() + 1 == slabs.slab_offsets.size());
+  std::vector<std::uint8_t> nodes(slabs.node_offsets.size() - 1, 0);
+  for (std::size_t slab = 0; slab < chosen.size(); ++slab) {
+    if (chosen[slab] == 0) continue;
+    for (std::uint32_t sum = slabs.slab_offsets[slab]; sum < slabs.slab_offsets[slab + 1]; ++sum)
+      nodes[static_cast<std::size_t>(slabs.nodes[sum])] = 1;
+  }
+  return nodes;
+}
+
+void choose_slabs_of(const NodeSlabs& slabs, Index node, std::span<std::uint8_t> chosen) {
+  const auto i = static_cast<std::size_t>(node);
+  for (std::uint32_t k = slabs.node_offsets[i]; k < slabs.node_offsets[i + 1]; ++k) {
+    const auto after = std::upper_bound(slabs.slab_offsets.begin(), slabs.slab_offsets.end(), slabs.node_sums[k]);
+    chosen[static_cast<std::size_t>(after - slabs.slab_offsets.begin()) - 1] = 1;
+  }
 }
 
 void add_slabs(const NodeSlabs& slabs, const AlignedVector<double>& sums, std::span<Vec3> vectors,

@@ -26,14 +26,21 @@ inline constexpr std::size_t kSlabBatches = 256;
 struct NodeSlabs {
   /// Of each batch, by node and lane: the place of the lane's node among its slab's sums.
   std::vector<std::uint16_t> places;
-  /// Sums of slab s: [slab_offsets[s], slab_offsets[s + 1]).
+  /// Sums of slab s: [slab_offsets[s], slab_offsets[s + 1]), and the node of each.
   std::vector<std::uint32_t> slab_offsets;
+  std::vector<Index> nodes;
   /// Sums of node i, by slabs: node_sums[node_offsets[i]] to node_sums[node_offsets[i + 1]].
   std::vector<std::uint32_t> node_offsets, node_sums;
 
   std::size_t sums() const { return slab_offsets.empty() ? 0 : slab_offsets.back(); }
   const std::uint16_t* places_of(std::size_t batch) const { return places.data() + 4 * kElementLanes * batch; }
 };
+
+/// 1 per node of a slab that has 1.
+std::vector<std::uint8_t> nodes_of_slabs(const NodeSlabs& slabs, std::span<const std::uint8_t> chosen);
+
+/// Sets 1 for every slab that has the node.
+void choose_slabs_of(const NodeSlabs& slabs, Index node, std::span<std::uint8_t> chosen);
 
 NodeSlabs make_node_slabs(const std::vector<Tet>& tets, std::size_t nodes);
 

@@ -5,9 +5,10 @@ namespace softreel {
 void find_step_terms(const ElasticBody& body, const StepSource& source, StepTerms& terms, const Threads& threads) {
   const std::span<const ElementBatch> batches = body.batches;
   terms.gradients.resize(16 * kElementLanes * batches.size());
+  terms.changed.resize(body.node_slabs.slab_offsets.size() - 1, 1);
   terms.forces.resize(4 * body.node_slabs.sums());
   const float expected = batches.empty() ? 0.0F : static_cast<float>(batches[0].lambda[0] / batches[0].mu[0]);
-  const auto slabs = static_cast<std::int64_t>(body.node_slabs.slab_offsets.size()) - 1;
+  const auto slabs = static_cast<std::int64_t>(terms.changed.size());
   const double different = threads.sum_chunks(slabs, 1, [&](std::int64_t slab, std::int64_t) {
     return static_cast<double>(find_step_slab(body, source, expected, terms, static_cast<std::size_t>(slab)));
   });

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/base/aligned.h"
 #include "core/base/parallel.h"
@@ -20,6 +21,8 @@ struct StepTerms {
   /// g_i = sqrt(s V mu) Q b_i as x y z r with r = slope of the dilatation stress over mu: elements x 4 x 4.
   /// Block (i, j) of S gains r g_i g_j^T + g_j g_i^T + (g_i . g_j) I.
   AlignedVector<float> gradients;
+  /// Per slab: 1 if a gradient of it was replaced. Whoever makes a matrix of the gradients sets it back to 0.
+  std::vector<std::uint8_t> changed;
   /// With T = t V Q sigma, t times the derivative of V Q sigma along the offsets and s times that along the velocities:
   /// the forces -T b_i on the nodes, N s, added up by slabs.
   AlignedVector<double> forces;
@@ -43,6 +46,8 @@ struct StepSource {
   std::span<const double> damping_stiffness;  ///< b per element, s; its share in S is s = t (seconds.position + b)
   /// The positions at the step's end less those above and seconds.position * velocities, m; empty: zero.
   std::span<const Vec3> offsets;
+  /// Gradients that change by less than this share of themselves are left as they are; negative: none is.
+  double kept_change = -1;
 };
 
 /// Fills `terms`; the vector twin of find_stiffness_terms, find_stresses and the product with K.

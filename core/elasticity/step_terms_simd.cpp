@@ -1,6 +1,7 @@
 /// find_step_slab on lanes of doubles.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <experimental/simd>
 
@@ -102,13 +103,36 @@ using NodeVectors = std::array<Vector, 4>;
   return products;
 }
 
-/// gradients: of the batch's first element.
-[[gnu::always_inline]] inline void store_gradients(const NodeVectors& g, const Lanes& ratio, float* gradients) {
+/// True if x y z of the vectors change by more than the root of `kept` of their length, or r by anything.
+[[gnu::always_inline]] inline bool changes(const std::array<FourFloats, 4>& from, const std::array<FourFloats, 4>& to,
+                                           float kept) {
+  FourFloats change{}, size{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const FourFloats difference = to[k] - from[k];
+    change += difference * difference;
+    size += to[k] * to[k];
+  }
+  return !(change[0] + change[1] + change[2] <= kept * (size[0] + size[1] + size[2]) && change[3] == 0);
+}
+
+/// Replaces the gradients of the batch's elements that change; true if there are any. gradients: of the first of them.
+/// kept: square of StepSource::kept_change; negative: all are replaced.
+[[gnu::always_inline]] inline bool store_gradients(const NodeVectors& g, const Lanes& ratio, float kept,
+                                                   float* gradients) {
+  std::array<std::array<FourFloats, 4>, kElementLanes> elements;
   for (std::size_t k = 0; k < 4; ++k) {
     const std::array<Four, 4> rows = transposed(as_four(g[k][0]), as_four(g[k][1]), as_four(g[k][2]), as_four(ratio));
     for (std::size_t lane = 0; lane < kElementLanes; ++lane)
-      *reinterpret_cast<FourFloats*>(gradients + 16 * lane + 4 * k) = __builtin_convertvector(rows[lane], FourFloats);
+      elements[lane][k] = __builtin_convertvector(rows[lane], FourFloats);
   }
+  bool any = false;
+  for (std::size_t lane = 0; lane < kElementLanes; ++lane) {
+    auto& stored = *reinterpret_cast<std::array<FourFloats, 4>*>(gradients + 16 * lane);
+    if (kept >= 0 && !changes(stored, elements[lane], kept)) continue;
+    stored = elements[lane];
+    any = true;
+  }
+  return any;
 }
 
 /// Takes the forces of the first `elements` lanes off the slab's sums, in the order of elements.
@@ -132,6 +156,8 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
   const NodeSlabs& slabs = body.node_slabs;
   double* const sums = terms.forces.data() + std::size_t{4} * slabs.slab_offsets[slab];
   std::fill(sums, terms.forces.data() + std::size_t{4} * slabs.slab_offsets[slab + 1], 0.0);
+  const auto kept = static_cast<float>(source.kept_change * std::abs(source.kept_change));
+  bool changed = false;
   const Lanes seconds(source.seconds.velocity), reach(source.seconds.position);
   for (std::size_t b = begin; b < end; ++b) {
     const ElementBatch& batch = body.batches[b];
@@ -151,10 +177,11 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
       T[k] *= volume;
       scaled[k] *= scale;
     }
-    store_gradients(find_products(batch, scaled), ratio, terms.gradients.data() + 16 * first);
+    changed |= store_gradients(find_products(batch, scaled), ratio, kept, terms.gradients.data() + 16 * first);
     subtract_forces(find_products(batch, T), std::min(kElementLanes, elements - first), slabs.places_of(b), sums);
     different += stdx::popcount(stdx::static_simd_cast<Floats>(ratio) != Floats(expected_ratio));
   }
+  if (changed) terms.changed[slab] = 1;
   return different;
 }
 

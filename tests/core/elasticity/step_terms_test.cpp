@@ -149,7 +149,7 @@ BlockMatrixf assembled_in_float(const Moving& moving, const std::vector<Index>& 
   BlockMatrixf matrix{stiffness_pattern(renumbered, static_cast<Index>(row_of_node.size())), {}};
   reserve_values(matrix);
   const FloatAssembler assembler(moving.mesh.tets, moving.body.node_elements, matrix.pattern, row_of_node);
-  assembler.assemble(moving.terms(thread_count), moving.node_terms, matrix, Threads(thread_count));
+  assembler.assemble(moving.terms(thread_count), moving.node_terms, {}, matrix, Threads(thread_count));
   return matrix;
 }
 
