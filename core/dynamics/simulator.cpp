@@ -160,6 +160,7 @@ void Simulator::set_state(SimulationState state) {
   CHECK((state.troubles.empty() || state.troubles.size() == parts_->body.tets.size()));
   parts_->state = std::move(state);
   parts_->coarse_lag.usable = false;
+  parts_->known_rest.known = false;
 }
 
 StepReport Simulator::step(double frame, double seconds, double error_limit) {

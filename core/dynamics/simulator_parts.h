@@ -34,6 +34,15 @@ struct CoarseLag {
   bool is_fresh() const { return last_iterations <= first_iterations + 1 + first_iterations / 8; }
 };
 
+/// Under which constraints the present state was found to be at rest: while it is not stepped, there is no need to look
+/// at its forces again.
+struct KnownRest {
+  bool known = false;  ///< false whenever the state changes
+  double seconds = 0;  ///< of the step that was left out
+  std::vector<std::uint8_t> held;
+  std::vector<ActivePull> pulls;
+};
+
 struct Simulator::Parts {
   Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads, const Log& its_log,
         StageTimes& its_times);
@@ -57,6 +66,7 @@ struct Simulator::Parts {
   SimulationState state;
 
   CoarseLag coarse_lag;
+  KnownRest known_rest;
 
   // Made when first asked for: steps in float need none of what steps in double and statics do, which is a sixth of all
   // the memory of a body, and the other way round.

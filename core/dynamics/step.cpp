@@ -173,7 +173,9 @@ void accept_or_reject(Simulator::Parts& parts, StepWork& work, double error_limi
     report.rejected = report.error > error_limit;
     next.previous_error = report.error;
   }
-  if (!report.rejected) parts.state = std::move(next);
+  if (report.rejected) return;
+  parts.state = std::move(next);
+  parts.known_rest.known = false;
 }
 
 }  // namespace
