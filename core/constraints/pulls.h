@@ -27,6 +27,7 @@ struct Spring {
   Vec3 offset;           ///< m; zero for a point inside its element
   Vec3 target;           ///< m
   double stiffness = 0;  ///< N/m
+  bool operator==(const Spring&) const = default;
 };
 
 /// A pull at one frame.
@@ -34,6 +35,7 @@ struct ActivePull {
   std::vector<Spring> springs;
   double stiffness = 0;  ///< N/m, of all springs
   double max_force = 0;  ///< N; 0: no limit
+  bool operator==(const ActivePull&) const = default;
 };
 
 /// Pulls that are active at `frame` with stiffness above 0.

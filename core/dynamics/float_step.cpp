@@ -65,6 +65,23 @@ void add(std::span<const Vec3> a, std::span<const Vec3> b, std::span<Vec3> sum) 
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = a[i] + b[i];
 }
 
+/// What work.change may still lack, up to factors: the motion goes on as in the last step, and as it changed there.
+/// Empty vectors where nothing is known.
+struct Guesses {
+  std::vector<Vec3> correction, difference;
+};
+
+Guesses guess_corrections(const Simulator::Parts& parts, const StepWork& work) {
+  const std::vector<Vec3>&last = parts.state.accelerations, &before = parts.state.previous_accelerations;
+  const double t = work.step.seconds.velocity;
+  Guesses guesses{std::vector<Vec3>(last.size(), Vec3::Zero()), std::vector<Vec3>(before.size(), Vec3::Zero())};
+  for (std::size_t i = 0; i < last.size(); ++i)
+    if (work.pinned.held[i] == 0) guesses.correction[i] = t * last[i] - work.change[i];
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (work.pinned.held[i] == 0) guesses.difference[i] = t * (last[i] - before[i]);
+  return guesses;
+}
+
 /// Corrections in float until the residual meets `target`. residual: that of work.change.
 SolveReport refine(Simulator::Parts& parts, StepWork& work, double target, std::vector<Vec3>& residual) {
   SolveReport report;
@@ -73,8 +90,10 @@ SolveReport refine(Simulator::Parts& parts, StepWork& work, double target, std::
     const double before = norm(residual);
     report.residual = before;
     if (before <= target) return report;
-    const FloatCorrection found =
-        parts.multigrid.correct_in_float(residual, target, parts.params.max_iterations - report.iterations, correction);
+    const Guesses guesses = round == 0 ? guess_corrections(parts, work) : Guesses{};
+    const std::span<const Vec3> directions[] = {guesses.correction, guesses.difference};
+    const FloatCorrection found = parts.multigrid.correct_in_float(
+        residual, target, parts.params.max_iterations - report.iterations, correction, directions);
     report.iterations += found.report.iterations;
     report.status = found.report.status;
     if (!found.report.ok()) return report;
@@ -90,6 +109,23 @@ SolveReport refine(Simulator::Parts& parts, StepWork& work, double target, std::
   return report;
 }
 
+/// The float matrix of parts.step_terms with its pulls. same_system: what has not changed may stay. Returns the share
+/// of the rows that did.
+double assemble_in_float(Simulator::Parts& parts, const StepWork& work, bool same_system) {
+  StepTerms& terms = parts.step_terms;
+  const std::vector<std::uint8_t> rows =
+      same_system ? nodes_of_slabs(parts.body.node_slabs, terms.changed) : std::vector<std::uint8_t>();
+  parts.float_assembler().assemble(terms, work.node_terms, rows, parts.multigrid.float_matrix(), parts.threads);
+  std::fill(terms.changed.begin(), terms.changed.end(), std::uint8_t{0});
+  for (const ActivePull& pull : work.pulls) {
+    add_pull_stiffness(pull, work.positions, work.step.seconds.velocity * work.step.seconds.position, parts.multigrid);
+    // What is added here is taken away by making these rows anew.
+    for (const Spring& spring : pull.springs)
+      for (const Index node : spring.nodes) choose_slabs_of(parts.body.node_slabs, node, terms.changed);
+  }
+  return static_cast<double>(std::count(rows.begin(), rows.end(), 0)) / static_cast<double>(parts.nodes());
+}
+
 }  // namespace
 
 bool suits_float(Simulator::Parts& parts, const StepSeconds& seconds) {
@@ -100,28 +136,26 @@ bool suits_float(Simulator::Parts& parts, const StepSeconds& seconds) {
   return parts.params.tolerance >= kLeastTolerance && parts.float_ratio <= kGreatestRatio;
 }
 
-SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work) {
+SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work, StepReport& step) {
   SolveReport report{SolveStatus::Breakdown, 0, 0, false};
   const std::size_t n = parts.nodes();
-  const StepSeconds& seconds = work.step.seconds;
+  CoarseLag& lag = parts.coarse_lag;
+  const bool same_system = lag.has_same_system(work.step.seconds, work.pinned.held);
   work.right_side.resize(n);
   work.change.assign(n, Vec3::Zero());
+  if (same_system) work.kept_change = parts.params.matrix_lag * parts.params.tolerance;
   {
     const ScopedStage stage(parts.times, "simulate/assemble");
     find_residual(parts, work, work.velocities, {}, work.right_side);
-    BlockMatrixf& matrix = parts.multigrid.float_matrix();
-    parts.float_assembler().assemble(parts.step_terms, work.node_terms, matrix, parts.threads);
-    for (const ActivePull& pull : work.pulls)
-      add_pull_stiffness(pull, work.positions, seconds.velocity * seconds.position, parts.multigrid);
+    step.kept_rows = assemble_in_float(parts, work, same_system);
   }
   const double scale = norm(work.right_side);
   if (!std::isfinite(scale)) return report;
-  CoarseLag& lag = parts.coarse_lag;
-  const bool keep_coarse = lag.allows(seconds, work.pinned.held);
+  step.kept_hierarchy = parts.params.keep_hierarchy && same_system && lag.is_fresh();
   lag.usable = false;
   {
     const ScopedStage stage(parts.times, "simulate/update");
-    if (!parts.multigrid.update_in_float(work.pinned.held, keep_coarse)) return report;
+    if (!parts.multigrid.update_in_float(work.pinned.held, step.kept_hierarchy)) return report;
   }
   const ScopedStage stage(parts.times, "simulate/solve");
   correct_translations(parts, work);
@@ -129,7 +163,7 @@ SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work) {
   for (std::size_t i = 0; i < n; ++i) residual[i] -= work.node_terms[i] * work.change[i];
   report = refine(parts, work, parts.params.tolerance * scale, residual);
   correct_translations(parts, work);
-  if (!keep_coarse) lag = {false, seconds, work.pinned.held, report.iterations, 0};
+  if (!step.kept_hierarchy) lag = {false, work.step.seconds, work.pinned.held, report.iterations, 0};
   lag.last_iterations = report.iterations;
   lag.usable = report.ok();
   if (scale > 0) report.residual /= scale;

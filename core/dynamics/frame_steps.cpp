@@ -33,6 +33,8 @@ void count(FrameReport& total, const StepReport& step) {
   total.recovering_elements = std::max(total.recovering_elements, step.recovery.elements);
   total.steps += step.rejected ? 0 : 1;
   total.steps_at_rest += step.at_rest ? 1 : 0;
+  total.kept_hierarchies += step.kept_hierarchy ? 1 : 0;
+  total.kept_matrices += step.kept_rows;
   total.steps_rejected += step.rejected ? 1 : 0;
 }
 

@@ -19,10 +19,12 @@ FrameGrid frame_grid(const SolverParams& params);
 
 /// What the steps of a frame did.
 struct FrameReport {
-  StepReport last;         ///< of the last step that was tried
-  int steps = 0;           ///< that count, at rest or not
-  int steps_at_rest = 0;   ///< of these, not solved
-  int steps_rejected = 0;  ///< solved in vain
+  StepReport last;           ///< of the last step that was tried
+  int steps = 0;             ///< that count, at rest or not
+  int steps_at_rest = 0;     ///< of these, not solved
+  int steps_rejected = 0;    ///< solved in vain
+  int kept_hierarchies = 0;  ///< steps that took those of an earlier one
+  double kept_matrices = 0;  ///< sum over the steps of the shares of their matrices that were kept
   int linear_iterations = 0, nonlinear_iterations = 0;
   Index recovering_elements = 0;  ///< most in a step
   bool too_short = false;         ///< the shortest step's error was above SolverParams::step_error

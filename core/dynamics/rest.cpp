@@ -27,12 +27,16 @@ bool is_at_rest(Simulator::Parts& parts, const PinnedNodes& pinned, const std::v
   if (!state.troubles.empty()) return false;  // recovery counts its steps
   if (tolerance == 0 || !is_still(state, tolerance * parts.body_size / seconds)) return false;
   if (!pins_stay(pinned, state.positions)) return false;
+  KnownRest& rest = parts.known_rest;
+  if (rest.known && rest.seconds == seconds && rest.held == pinned.held && rest.pulls == pulls) return true;
   const std::vector<std::uint8_t> held_pieces = parts.held_pieces(pinned, pulls);
   StaticSolver statics(parts, pinned.held, held_pieces, pulls);
   StaticState now{state.positions, state.rotations, {}};
   statics.evaluate(now);
   std::vector<Mat3>().swap(parts.stresses);  // steps in float do without
-  return now.residual <= parts.params.force_tolerance * now.scale;
+  if (!(now.residual <= parts.params.force_tolerance * now.scale)) return false;
+  rest = {true, seconds, pinned.held, pulls};
+  return true;
 }
 
 }  // namespace softreel

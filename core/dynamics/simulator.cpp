@@ -154,11 +154,13 @@ void Simulator::set_state(SimulationState state) {
   CHECK(state.positions.size() == parts_->nodes());
   CHECK(state.velocities.size() == parts_->nodes());
   CHECK(state.rotations.size() == parts_->body.tets.size());
-  for (const auto* memory : {&state.previous_positions, &state.previous_velocities, &state.accelerations})
+  for (const auto* memory :
+       {&state.previous_positions, &state.previous_velocities, &state.accelerations, &state.previous_accelerations})
     if (!memory->empty()) CHECK(memory->size() == parts_->nodes());
   CHECK((state.troubles.empty() || state.troubles.size() == parts_->body.tets.size()));
   parts_->state = std::move(state);
   parts_->coarse_lag.usable = false;
+  parts_->known_rest.known = false;
 }
 
 StepReport Simulator::step(double frame, double seconds, double error_limit) {

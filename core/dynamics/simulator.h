@@ -51,9 +51,12 @@ struct SolverParams {
   /// A body at rest is not stepped: one whose nodes would all move less than this times its size by their velocities,
   /// whose forces balance to force_tolerance and whose pins do not move. 0: every body is stepped.
   double rest_tolerance = 1e-7;
-  double tolerance = 1e-3;          ///< of the linear solve of a step: |r| / |b|
-  double force_tolerance = 1e-6;    ///< statics, iterated steps: |residual force| over the force scale of the body
-  int max_iterations = 400;         ///< of one linear solve
+  /// Within a frame, elements whose matrix would change by less than this times `tolerance` since it was made keep it.
+  double matrix_lag = 0.1;
+  bool keep_hierarchy = true;     ///< within a frame, while iteration counts do not grow; else made anew at every step
+  double tolerance = 1e-3;        ///< of the linear solve of a step: |r| / |b|
+  double force_tolerance = 1e-6;  ///< statics, iterated steps: |residual force| over the force scale of the body
+  int max_iterations = 400;       ///< of one linear solve
   int max_newton_iterations = 200;  ///< statics, per frame; iterated steps, per step
   MultigridParams multigrid;
 };
@@ -73,27 +76,30 @@ struct BodyModel {
   Vec3 gravity = Vec3(0, -9.81, 0);  ///< m/s^2
 };
 
-/// All that changes from step to step: storing it and setting it again continues with the same bits. The last five are
-/// the integrator's memory: empty and 0 before the first step and where it needs none.
+/// All that changes from step to step: storing it and setting it again continues with the same bits. After the
+/// rotations comes what integrator and solver remember: empty and 0 before the first step and where nothing needs it.
 struct SimulationState {
-  std::vector<Vec3> positions;              ///< nodes x 3, m
-  std::vector<Vec3> velocities;             ///< nodes x 3, m/s
-  std::vector<Quaternion> rotations;        ///< per element, warm start of the next extraction
-  std::vector<Vec3> previous_positions{};   ///< BDF2: before the last step, m
-  std::vector<Vec3> previous_velocities{};  ///< BDF2: before the last step, m/s
-  std::vector<Vec3> accelerations{};        ///< Newmark: nodes x 3, m/s^2
-  double previous_error = 0;                ///< error control: of the last step, over the body's size
-  double previous_seconds = 0;              ///< BDF2, Newmark, error control: length of the last step
-  ElementTroubles troubles = {};            ///< of recovery: empty while all is well
+  std::vector<Vec3> positions;                 ///< nodes x 3, m
+  std::vector<Vec3> velocities;                ///< nodes x 3, m/s
+  std::vector<Quaternion> rotations;           ///< per element, warm start of the next extraction
+  std::vector<Vec3> previous_positions{};      ///< BDF2: before the last step, m
+  std::vector<Vec3> previous_velocities{};     ///< BDF2: before the last step, m/s
+  std::vector<Vec3> accelerations{};           ///< nodes x 3, m/s^2: Newmark's, and the next solve's first guess
+  std::vector<Vec3> previous_accelerations{};  ///< before the last step: how the guess changes
+  double previous_error = 0;                   ///< error control: of the last step, over the body's size
+  double previous_seconds = 0;                 ///< BDF2, Newmark, error control: length of the last step
+  ElementTroubles troubles = {};               ///< of recovery: empty while all is well
 };
 
 /// What a step did. If it could not be solved, `culprit` names the element (with its centroid) or constraint to blame.
 struct StepReport {
   SolveReport solve;
   int nonlinear_iterations = 1;
-  double error = 0;       ///< estimated, of the positions, over the body's size
-  bool rejected = false;  ///< the error is above the limit: the state was left as it was
-  bool at_rest = false;   ///< nothing was to be done: the state was left as it was
+  double error = 0;             ///< estimated, of the positions, over the body's size
+  bool rejected = false;        ///< the error is above the limit: the state was left as it was
+  bool at_rest = false;         ///< nothing was to be done: the state was left as it was
+  bool kept_hierarchy = false;  ///< the coarse levels are those of an earlier step
+  double kept_rows = 0;         ///< share of the matrix that was left as it was, 0 to 1
   std::string culprit;
   RecoveryReport recovery = {};
   bool ok() const { return solve.ok(); }

@@ -26,11 +26,21 @@ struct CoarseLag {
   int first_iterations = 0;        ///< of the step that made them
   int last_iterations = 0;         ///< of the last step
 
-  /// True if the next step may keep them: the same system but for the rotations, and hardly more iterations.
-  bool allows(const StepSeconds& step_seconds, const std::vector<std::uint8_t>& step_held) const {
-    return usable && seconds == step_seconds && held == step_held &&
-           last_iterations <= first_iterations + 1 + first_iterations / 8;
+  /// True if the next step's system is the same but for the rotations and pulls.
+  bool has_same_system(const StepSeconds& step_seconds, const std::vector<std::uint8_t>& step_held) const {
+    return usable && seconds == step_seconds && held == step_held;
   }
+  /// True if the coarse levels need hardly more iterations than when they were made.
+  bool is_fresh() const { return last_iterations <= first_iterations + 1 + first_iterations / 8; }
+};
+
+/// Under which constraints the present state was found to be at rest: while it is not stepped, there is no need to look
+/// at its forces again.
+struct KnownRest {
+  bool known = false;  ///< false whenever the state changes
+  double seconds = 0;  ///< of the step that was left out
+  std::vector<std::uint8_t> held;
+  std::vector<ActivePull> pulls;
 };
 
 struct Simulator::Parts {
@@ -56,6 +66,7 @@ struct Simulator::Parts {
   SimulationState state;
 
   CoarseLag coarse_lag;
+  KnownRest known_rest;
 
   // Made when first asked for: steps in float need none of what steps in double and statics do, which is a sixth of all
   // the memory of a body, and the other way round.

@@ -74,6 +74,7 @@ SolveReport solve_in_steps(const Simulator::Parts& parts, StaticSolver& solver, 
 
 StepReport Simulator::Parts::find_equilibrium(double frame) {
   coarse_lag.usable = false;
+  known_rest.known = false;
   const PinnedNodes pinned = pins.at(frame);
   const std::vector<ActivePull> pulls = pulls_at(frame);
   StepReport report;

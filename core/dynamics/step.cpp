@@ -76,13 +76,13 @@ SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
   return report;
 }
 
-SolveReport solve_once(Simulator::Parts& parts, StepWork& work) {
+SolveReport solve_once(Simulator::Parts& parts, StepWork& work, StepReport& step) {
   const double t = work.step.seconds.velocity;
   work.node_terms.resize(parts.nodes());
   for (std::size_t i = 0; i < work.node_terms.size(); ++i)
     work.node_terms[i] = parts.masses.mass[i] + t * parts.masses.damping[i];
   if (suits_float(parts, work.step.seconds)) {
-    const SolveReport report = solve_step_in_float(parts, work);
+    const SolveReport report = solve_step_in_float(parts, work, step);
     if (report.ok()) return report;
   }
   parts.coarse_lag.usable = false;
@@ -155,7 +155,7 @@ StepReport solve_step(Simulator::Parts& parts, double frame, StepWork& work) {
   if (linearization(parts.params) == Linearize::Iterated && recovery.elements == 0)
     report = iterate_step(parts, work);
   else
-    report.solve = solve_once(parts, work);
+    report.solve = solve_once(parts, work, report);
   report.recovery = recovery;
   return report;
 }
@@ -173,7 +173,9 @@ void accept_or_reject(Simulator::Parts& parts, StepWork& work, double error_limi
     report.rejected = report.error > error_limit;
     next.previous_error = report.error;
   }
-  if (!report.rejected) parts.state = std::move(next);
+  if (report.rejected) return;
+  parts.state = std::move(next);
+  parts.known_rest.known = false;
 }
 
 }  // namespace
@@ -183,9 +185,10 @@ void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<cons
   const StepSeconds& seconds = work.step.seconds;
   const double t = seconds.velocity;
   find_step_terms(parts.body,
-                  {work.positions, end_velocities, work.rotations, seconds, parts.damping_stiffness, work.offsets},
+                  {work.positions, end_velocities, work.rotations, seconds, parts.damping_stiffness, work.offsets,
+                   work.kept_change},
                   parts.step_terms, parts.threads);
-  gather_step_forces(parts.body.node_elements, parts.step_terms, residual, parts.threads);
+  gather_step_forces(parts.body, parts.step_terms, residual, parts.threads);
   const Vec3 gravity = t * parts.model.gravity;
   for (std::size_t i = 0; i < residual.size(); ++i) {
     residual[i] += parts.masses.mass[i] * gravity - t * parts.masses.damping[i] * work.velocities[i];

@@ -23,6 +23,7 @@ struct StepWork {
   std::vector<double> node_terms;     ///< mass part of S
   std::vector<Vec3> right_side, change;
   ElementTroubles troubles = {};  ///< in: of the step before; find_step_rotations counts this one
+  double kept_change = -1;        ///< StepSource::kept_change
 };
 
 /// t f + M (base velocities) - (M + t C) v - t K (seconds.position v + offsets) for v = velocities + change and t =
@@ -44,8 +45,8 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work);
 bool suits_float(Simulator::Parts& parts, const StepSeconds& seconds);
 
 /// Solves for work.change with the matrix in float and residuals in double; fills work.right_side. Not ok where float
-/// does not do: then work.change means nothing, and the step is to be solved in double.
-SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work);
+/// does not do: then work.change means nothing, and the step is to be solved in double. step: gets what was kept.
+SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work, StepReport& step);
 
 /// Finds work.change, and the rotations at the step's end, by Newton to force balance; work.right_side becomes the
 /// unbalanced forces.

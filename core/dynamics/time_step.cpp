@@ -120,17 +120,15 @@ double estimate_error(const SolverParams& params, const SimulationState& state, 
 
 void remember(const SolverParams& params, const TimeStep& step, const SimulationState& before,
               std::span<const std::uint8_t> held, std::span<const Vec3> targets, SimulationState& after) {
-  if (params.integrator == Integrator::Euler && params.step_error == 0) return;
-  after.previous_seconds = step.h;
-  if (params.integrator == Integrator::Euler) return;
+  if (params.integrator != Integrator::Euler || params.step_error > 0) after.previous_seconds = step.h;
   if (params.integrator == Integrator::Bdf2) {
     after.previous_positions = before.positions;
     after.previous_velocities = before.velocities;
-    return;
   }
+  after.previous_accelerations = before.accelerations;
   after.accelerations.resize(after.velocities.size());
   for (std::size_t i = 0; i < after.velocities.size(); ++i)
-    after.accelerations[i] = held[i] != 0
+    after.accelerations[i] = held[i] != 0 && params.integrator == Integrator::Newmark
                                  ? find_held_motion(params, before, i, targets[i], step.h).acceleration
                                  : Vec3((after.velocities[i] - step.base_velocities[i]) / step.seconds.velocity);
 }

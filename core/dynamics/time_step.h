@@ -43,7 +43,8 @@ std::vector<Vec3> predict_positions(const SolverParams& params, const Simulation
 double estimate_error(const SolverParams& params, const SimulationState& state, double h,
                       std::span<const std::uint8_t> held, std::span<const Vec3> positions);
 
-/// The integrator's memory of `before`, in `after`. velocities of free nodes in `after` are those of the step's end.
+/// The integrator's and the solver's memory of `before`, in `after`. velocities of free nodes in `after` are those of
+/// the step's end.
 void remember(const SolverParams& params, const TimeStep& step, const SimulationState& before,
               std::span<const std::uint8_t> held, std::span<const Vec3> targets, SimulationState& after);
 

@@ -94,6 +94,7 @@ ElasticBody make_elastic_body(const TetMesh& mesh, const std::vector<ElementMate
   }
   body.batches = make_element_batches(body.tets, body.shapes, body.laws);
   body.node_elements = gather_node_elements(mesh.tets, static_cast<Index>(mesh.nodes.size()));
+  body.node_slabs = make_node_slabs(mesh.tets, mesh.nodes.size());
   return body;
 }
 

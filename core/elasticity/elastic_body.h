@@ -10,6 +10,7 @@
 #include "core/elasticity/element.h"
 #include "core/elasticity/element_lanes.h"
 #include "core/elasticity/material.h"
+#include "core/elasticity/node_sums.h"
 #include "core/tetmesh/tet_mesh.h"
 
 namespace softreel {
@@ -49,6 +50,7 @@ struct ElasticBody {
   std::vector<ElasticLaw> laws;       ///< per element
   std::vector<ElementBatch> batches;  ///< shapes and laws again, in lanes
   NodeElements node_elements;
+  NodeSlabs node_slabs;
 };
 
 /// The mesh with its materials (one per element). Volumes must be positive.

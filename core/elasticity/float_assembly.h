@@ -24,9 +24,10 @@ class FloatAssembler {
                  std::span<const Index> row_of_node);
 
   /// matrix = diag(node_terms I) + sum of the elements' blocks, column-major blocks; symmetric to the last bit.
-  /// node_terms: per mesh node. matrix: on the target pattern, with room.
-  void assemble(const StepTerms& terms, std::span<const double> node_terms, BlockMatrixf& matrix,
-                const Threads& threads) const;
+  /// node_terms: per mesh node. matrix: on the target pattern, with room. rows: per mesh node, 1 where what the node
+  /// shares with nodes after it is to be made anew; the rest of the matrix stays. Empty: all is made.
+  void assemble(const StepTerms& terms, std::span<const double> node_terms, std::span<const std::uint8_t> rows,
+                BlockMatrixf& matrix, const Threads& threads) const;
 
  private:
   /// A block (i, j), i < j by mesh nodes, and (j, i); its references are those from `first` to the next block's.
@@ -35,8 +36,7 @@ class FloatAssembler {
   };
 
   template <bool kUniform>
-  void gather_rows(const StepTerms& terms, std::span<const double> node_terms, BlockMatrixf& matrix, std::int64_t begin,
-                   std::int64_t end) const;
+  void gather_row(const StepTerms& terms, double node_term, BlockMatrixf& matrix, std::size_t i) const;
 
   const NodeElements& node_elements_;
   std::vector<std::int64_t> diagonals_;    ///< position of each mesh node's diagonal block

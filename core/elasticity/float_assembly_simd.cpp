@@ -115,42 +115,43 @@ FloatAssembler::FloatAssembler(const std::vector<Tet>& tets, const NodeElements&
 }
 
 template <bool kUniform>
-void FloatAssembler::gather_rows(const StepTerms& terms, std::span<const double> node_terms, BlockMatrixf& matrix,
-                                 std::int64_t begin, std::int64_t end) const {
+void FloatAssembler::gather_row(const StepTerms& terms, double node_term, BlockMatrixf& matrix, std::size_t i) const {
   const float* const gradients = terms.gradients.data();
   const float ratio = gradients[3];
-  for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-    Products<kUniform> own;
-    for (std::int64_t k = node_elements_.offsets[i]; k < node_elements_.offsets[i + 1]; ++k) {
-      const float* const g = gradients + std::size_t{4} * node_elements_.entries[static_cast<std::size_t>(k)];
-      own.add(g, g);
+  Products<kUniform> own;
+  for (std::int64_t k = node_elements_.offsets[i]; k < node_elements_.offsets[i + 1]; ++k) {
+    const float* const g = gradients + std::size_t{4} * node_elements_.entries[static_cast<std::size_t>(k)];
+    own.add(g, g);
+  }
+  // A sum of g g^T is symmetric to the last bit as it is.
+  store(kUniform ? scaled(own.plain, ratio) : own.weighted, own.plain, trace(own.plain) + static_cast<float>(node_term),
+        matrix.block(diagonals_[i]));
+  for (std::int64_t b = row_starts_[i]; b < row_starts_[i + 1]; ++b) {
+    const Block& block = blocks_[static_cast<std::size_t>(b)];
+    const std::uint32_t last = blocks_[static_cast<std::size_t>(b) + 1].first;
+    Products<kUniform> products;
+    for (std::uint32_t r = block.first; r < last; ++r) {
+      const std::size_t reference = references_[r];
+      products.add(gradients + 4 * (reference >> 2), gradients + 16 * (reference >> 4) + 4 * (reference & 3));
     }
-    // A sum of g g^T is symmetric to the last bit as it is.
-    store(kUniform ? scaled(own.plain, ratio) : own.weighted, own.plain,
-          trace(own.plain) + static_cast<float>(node_terms[i]), matrix.block(diagonals_[i]));
-    for (std::int64_t b = row_starts_[i]; b < row_starts_[i + 1]; ++b) {
-      const Block& block = blocks_[static_cast<std::size_t>(b)];
-      const std::uint32_t last = blocks_[static_cast<std::size_t>(b) + 1].first;
-      Products<kUniform> products;
-      for (std::uint32_t r = block.first; r < last; ++r) {
-        const std::size_t reference = references_[r];
-        products.add(gradients + 4 * (reference >> 2), gradients + 16 * (reference >> 4) + 4 * (reference & 3));
-      }
-      store_pair<kUniform>(products, ratio, matrix.block(block.position), matrix.block(block.mirror));
-    }
+    store_pair<kUniform>(products, ratio, matrix.block(block.position), matrix.block(block.mirror));
   }
 }
 
-void FloatAssembler::assemble(const StepTerms& terms, std::span<const double> node_terms, BlockMatrixf& matrix,
-                              const Threads& threads) const {
+void FloatAssembler::assemble(const StepTerms& terms, std::span<const double> node_terms,
+                              std::span<const std::uint8_t> rows, BlockMatrixf& matrix, const Threads& threads) const {
   CHECK(static_cast<std::int64_t>(matrix.values.size()) >= 9 * matrix.pattern.blocks());
   CHECK(node_terms.size() == diagonals_.size());
+  CHECK((rows.empty() || rows.size() == diagonals_.size()));
   threads.for_chunks(static_cast<std::int64_t>(diagonals_.size()), kRowGrain,
                      [&](std::int64_t begin, std::int64_t end) {
-                       if (terms.uniform_ratio)
-                         gather_rows<true>(terms, node_terms, matrix, begin, end);
-                       else
-                         gather_rows<false>(terms, node_terms, matrix, begin, end);
+                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                         if (!rows.empty() && rows[i] == 0) continue;
+                         if (terms.uniform_ratio)
+                           gather_row<true>(terms, node_terms[i], matrix, i);
+                         else
+                           gather_row<false>(terms, node_terms[i], matrix, i);
+                       }
                      });
 }
 

@@ -1,12 +1,13 @@
 /// What the elements bring to one implicit time step, in one pass: the matrix's gradients in float, and the forces of
 /// the right side in double.
 ///
-/// Bound: an element reads 128 bytes of rest shape, 40 of rotation and share, its nodes from cache, and writes 64 + 96
-/// bytes; about 330 multiplies and adds, 8 to 10 ns in four lanes of AVX2.
+/// Bound: an element reads 120 bytes of rest shape, 48 of rotation, share and places, its nodes from cache, and writes
+/// 64 bytes; about 330 multiplies and adds, 8 to 10 ns in four lanes of AVX2.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/base/aligned.h"
 #include "core/base/parallel.h"
@@ -20,8 +21,10 @@ struct StepTerms {
   /// g_i = sqrt(s V mu) Q b_i as x y z r with r = slope of the dilatation stress over mu: elements x 4 x 4.
   /// Block (i, j) of S gains r g_i g_j^T + g_j g_i^T + (g_i . g_j) I.
   AlignedVector<float> gradients;
-  /// t V Q sigma, t times the derivative of V Q sigma along the offsets and s times that along the velocities, as
-  /// forces -T b_i on the nodes, N s: elements x 4 x 3, and one scalar more for the lanes of the last.
+  /// Per slab: 1 if a gradient of it was replaced. Whoever makes a matrix of the gradients sets it back to 0.
+  std::vector<std::uint8_t> changed;
+  /// With T = t V Q sigma, t times the derivative of V Q sigma along the offsets and s times that along the velocities:
+  /// the forces -T b_i on the nodes, N s, added up by slabs.
   AlignedVector<double> forces;
   /// True if r is the same in all elements.
   bool uniform_ratio = false;
@@ -43,17 +46,19 @@ struct StepSource {
   std::span<const double> damping_stiffness;  ///< b per element, s; its share in S is s = t (seconds.position + b)
   /// The positions at the step's end less those above and seconds.position * velocities, m; empty: zero.
   std::span<const Vec3> offsets;
+  /// Gradients that change by less than this share of themselves are left as they are; negative: none is.
+  double kept_change = -1;
 };
 
 /// Fills `terms`; the vector twin of find_stiffness_terms, find_stresses and the product with K.
 void find_step_terms(const ElasticBody& body, const StepSource& source, StepTerms& terms, const Threads& threads);
 
-/// Sum of the elements' forces on each node, in the order of elements.
-void gather_step_forces(const NodeElements& node_elements, const StepTerms& terms, std::span<Vec3> forces,
+/// Sum of the elements' forces on each node.
+void gather_step_forces(const ElasticBody& body, const StepTerms& terms, std::span<Vec3> forces,
                         const Threads& threads);
 
-/// The batches [begin, end) of find_step_terms; returns how many elements have another ratio than `expected_ratio`.
-std::int64_t find_step_batches(std::span<const ElementBatch> batches, const StepSource& source, float expected_ratio,
-                               StepTerms& terms, std::size_t begin, std::size_t end);
+/// One slab of find_step_terms; returns how many of its elements have another ratio than `expected_ratio`.
+std::int64_t find_step_slab(const ElasticBody& body, const StepSource& source, float expected_ratio, StepTerms& terms,
+                            std::size_t slab);
 
 }  // namespace softreel

@@ -1,5 +1,7 @@
-/// find_step_batches on lanes of doubles.
+/// find_step_slab on lanes of doubles.
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include <experimental/simd>
 
@@ -11,18 +13,29 @@ namespace {
 
 namespace stdx = std::experimental;
 using Lanes = stdx::simd<double, stdx::simd_abi::deduce_t<double, kElementLanes>>;
+using Floats = stdx::rebind_simd_t<float, Lanes>;
 using Vector = detail::Vector3<Lanes>;
 using Matrix = detail::Matrix9<Lanes>;
 using Symmetric = detail::Symmetric3<Lanes>;
 
-/// Lanes of a batch on their way to arrays of elements.
-template <std::size_t kRows>
-struct alignas(32) LaneRows {
-  double rows[kRows][kElementLanes];
-  [[gnu::always_inline]] void put(std::size_t row, const Lanes& lanes) {
-    lanes.copy_to(rows[row], stdx::vector_aligned);
-  }
-};
+/// Lanes of one element's (x y z r), for the shuffles that std::experimental::simd does not have.
+typedef double Four __attribute__((vector_size(32)));
+typedef float FourFloats __attribute__((vector_size(16)));
+typedef long long Order __attribute__((vector_size(32)));
+
+/// Four quantities of four elements each, as four elements' four quantities.
+[[gnu::always_inline]] inline std::array<Four, 4> transposed(const Four& a, const Four& b, const Four& c,
+                                                             const Four& d) {
+  const Four even_ab = __builtin_shuffle(a, b, Order{0, 4, 2, 6}), odd_ab = __builtin_shuffle(a, b, Order{1, 5, 3, 7}),
+             even_cd = __builtin_shuffle(c, d, Order{0, 4, 2, 6}), odd_cd = __builtin_shuffle(c, d, Order{1, 5, 3, 7});
+  return {__builtin_shuffle(even_ab, even_cd, Order{0, 1, 4, 5}), __builtin_shuffle(odd_ab, odd_cd, Order{0, 1, 4, 5}),
+          __builtin_shuffle(even_ab, even_cd, Order{2, 3, 6, 7}), __builtin_shuffle(odd_ab, odd_cd, Order{2, 3, 6, 7})};
+}
+
+[[gnu::always_inline]] inline Four as_four(const Lanes& lanes) {
+  static_assert(kElementLanes == 4);
+  return reinterpret_cast<Four>(static_cast<__m256d>(lanes));
+}
 
 Lanes load(const double* from) {
   return Lanes(from, stdx::vector_aligned);
@@ -78,58 +91,77 @@ template <bool kOffsets>
           pressure.slope};
 }
 
-/// Rows 3 k + c: component c of -T b_k; those of node 0 make the sum zero.
-[[gnu::always_inline]] inline void put_forces(const ElementBatch& batch, const Matrix& T, LaneRows<12>& forces) {
-  Vector sum{Lanes(0), Lanes(0), Lanes(0)};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector f = detail::product(T, detail::load_vector<Lanes>(batch.gradients + 3 * k, stdx::vector_aligned));
-    for (std::size_t c = 0; c < 3; ++c) {
-      forces.put(3 * k + 3 + c, -f[c]);
-      sum[c] += f[c];
-    }
-  }
-  for (std::size_t c = 0; c < 3; ++c) forces.put(c, sum[c]);
+using NodeVectors = std::array<Vector, 4>;
+
+/// matrix * b_k for the four nodes of the elements; that of node 0 makes the sum zero.
+[[gnu::always_inline]] inline NodeVectors find_products(const ElementBatch& batch, const Matrix& matrix) {
+  NodeVectors products;
+  for (std::size_t k = 0; k < 3; ++k)
+    products[k + 1] =
+        detail::product(matrix, detail::load_vector<Lanes>(batch.gradients + 3 * k, stdx::vector_aligned));
+  for (std::size_t c = 0; c < 3; ++c) products[0][c] = -(products[1][c] + products[2][c] + products[3][c]);
+  return products;
 }
 
-/// Rows 3 k + c: component c of scale Q b_k.
-[[gnu::always_inline]] inline void put_gradients(const ElementBatch& batch, const Matrix& scaled_rotation,
-                                                 LaneRows<12>& gradients) {
-  Vector sum{Lanes(0), Lanes(0), Lanes(0)};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector g =
-        detail::product(scaled_rotation, detail::load_vector<Lanes>(batch.gradients + 3 * k, stdx::vector_aligned));
-    for (std::size_t c = 0; c < 3; ++c) {
-      gradients.put(3 * k + 3 + c, g[c]);
-      sum[c] -= g[c];
-    }
+/// True if x y z of the vectors change by more than the root of `kept` of their length, or r by anything.
+[[gnu::always_inline]] inline bool changes(const std::array<FourFloats, 4>& from, const std::array<FourFloats, 4>& to,
+                                           float kept) {
+  FourFloats change{}, size{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const FourFloats difference = to[k] - from[k];
+    change += difference * difference;
+    size += to[k] * to[k];
   }
-  for (std::size_t c = 0; c < 3; ++c) gradients.put(c, sum[c]);
+  return !(change[0] + change[1] + change[2] <= kept * (size[0] + size[1] + size[2]) && change[3] == 0);
 }
 
-/// Rows to elements: gradients as x y z r.
-[[gnu::always_inline]] inline void store(const LaneRows<12>& gradients, const LaneRows<12>& forces, const Lanes& ratio,
-                                         std::size_t first, StepTerms& terms) {
+/// Replaces the gradients of the batch's elements that change; true if there are any. gradients: of the first of them.
+/// kept: square of StepSource::kept_change; negative: all are replaced.
+[[gnu::always_inline]] inline bool store_gradients(const NodeVectors& g, const Lanes& ratio, float kept,
+                                                   float* gradients) {
+  std::array<std::array<FourFloats, 4>, kElementLanes> elements;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::array<Four, 4> rows = transposed(as_four(g[k][0]), as_four(g[k][1]), as_four(g[k][2]), as_four(ratio));
+    for (std::size_t lane = 0; lane < kElementLanes; ++lane)
+      elements[lane][k] = __builtin_convertvector(rows[lane], FourFloats);
+  }
+  bool any = false;
   for (std::size_t lane = 0; lane < kElementLanes; ++lane) {
-    float* const to = terms.gradients.data() + 16 * (first + lane);
-    const auto r = static_cast<float>(ratio[lane]);
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t c = 0; c < 3; ++c) to[4 * k + c] = static_cast<float>(gradients.rows[3 * k + c][lane]);
-      to[4 * k + 3] = r;
-    }
-    double* const force = terms.forces.data() + 12 * (first + lane);
-    for (std::size_t c = 0; c < 12; ++c) force[c] = forces.rows[c][lane];
+    auto& stored = *reinterpret_cast<std::array<FourFloats, 4>*>(gradients + 16 * lane);
+    if (kept >= 0 && !changes(stored, elements[lane], kept)) continue;
+    stored = elements[lane];
+    any = true;
   }
+  return any;
+}
+
+/// Takes the forces of the first `elements` lanes off the slab's sums, in the order of elements.
+[[gnu::always_inline]] inline void subtract_forces(const NodeVectors& f, std::size_t elements,
+                                                   const std::uint16_t* places, double* sums) {
+  std::array<std::array<Four, 4>, 4> rows;
+  for (std::size_t k = 0; k < 4; ++k)
+    rows[k] = transposed(as_four(f[k][0]), as_four(f[k][1]), as_four(f[k][2]), Four{});
+  for (std::size_t lane = 0; lane < elements; ++lane)
+    for (std::size_t k = 0; k < 4; ++k)
+      *reinterpret_cast<Four*>(sums + std::size_t{4} * places[kElementLanes * k + lane]) -= rows[k][lane];
 }
 
 /// kOffsets: there are offsets.
 template <bool kOffsets>
-std::int64_t find_batches(std::span<const ElementBatch> batches, const StepSource& source, float expected_ratio,
-                          StepTerms& terms, std::size_t begin, std::size_t end) {
+std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float expected_ratio, StepTerms& terms,
+                       std::size_t slab) {
   std::int64_t different = 0;
+  const std::size_t elements = source.rotations.size(), last = elements - 1, begin = kSlabBatches * slab,
+                    end = std::min(begin + kSlabBatches, body.batches.size());
+  const NodeSlabs& slabs = body.node_slabs;
+  double* const sums = terms.forces.data() + std::size_t{4} * slabs.slab_offsets[slab];
+  std::fill(sums, terms.forces.data() + std::size_t{4} * slabs.slab_offsets[slab + 1], 0.0);
+  const auto kept = static_cast<float>(source.kept_change * std::abs(source.kept_change));
+  bool changed = false;
   const Lanes seconds(source.seconds.velocity), reach(source.seconds.position);
   for (std::size_t b = begin; b < end; ++b) {
-    const ElementBatch& batch = batches[b];
-    const std::size_t first = kElementLanes * b, last = source.rotations.size() - 1;
+    const ElementBatch& batch = body.batches[b];
+    const std::size_t first = kElementLanes * b;
     const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
     const Lanes share =
         seconds * (reach + Lanes([&](auto lane) { return source.damping_stiffness[std::min(first + lane, last)]; }));
@@ -145,22 +177,20 @@ std::int64_t find_batches(std::span<const ElementBatch> batches, const StepSourc
       T[k] *= volume;
       scaled[k] *= scale;
     }
-    LaneRows<12> gradients, forces;
-    put_gradients(batch, scaled, gradients);
-    put_forces(batch, T, forces);
-    store(gradients, forces, ratio, first, terms);
-    for (std::size_t lane = 0; lane < kElementLanes; ++lane)
-      if (static_cast<float>(ratio[lane]) != expected_ratio) ++different;
+    changed |= store_gradients(find_products(batch, scaled), ratio, kept, terms.gradients.data() + 16 * first);
+    subtract_forces(find_products(batch, T), std::min(kElementLanes, elements - first), slabs.places_of(b), sums);
+    different += stdx::popcount(stdx::static_simd_cast<Floats>(ratio) != Floats(expected_ratio));
   }
+  if (changed) terms.changed[slab] = 1;
   return different;
 }
 
 }  // namespace
 
-std::int64_t find_step_batches(std::span<const ElementBatch> batches, const StepSource& source, float expected_ratio,
-                               StepTerms& terms, std::size_t begin, std::size_t end) {
-  return source.offsets.empty() ? find_batches<false>(batches, source, expected_ratio, terms, begin, end)
-                                : find_batches<true>(batches, source, expected_ratio, terms, begin, end);
+std::int64_t find_step_slab(const ElasticBody& body, const StepSource& source, float expected_ratio, StepTerms& terms,
+                            std::size_t slab) {
+  return source.offsets.empty() ? find_slab<false>(body, source, expected_ratio, terms, slab)
+                                : find_slab<true>(body, source, expected_ratio, terms, slab);
 }
 
 }  // namespace softreel

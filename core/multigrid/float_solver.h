@@ -21,8 +21,11 @@ class FloatSolver {
   FloatSolver(Cycle<float>& cycle, const Threads& threads) : cycle_(cycle), threads_(threads) {}
 
   /// Solves A y = r for r = cycle.right_side(), which becomes the residual, to |r| <= target in float arithmetic.
+  /// guesses: directions that y may lie in, in the order of level 0. They are searched first, as if the cycle had
+  /// proposed them, so the best multiple of each is taken and a bad one costs a product with A and nothing else.
   /// Status: Converged, MaxIterations, or Breakdown after stagnation or loss of definiteness.
-  SolveReport solve(double target, int max_iterations, SolveMethod method);
+  SolveReport solve(double target, int max_iterations, SolveMethod method,
+                    std::span<const NodeVector<float>> guesses = {});
 
   /// The last solution, in the order of the cycle's level 0.
   const NodeVector<float>& solution() const { return x_; }
@@ -32,12 +35,20 @@ class FloatSolver {
     double zr = 0, zq = 0, zAz = 0;
   };
 
-  Dots find_dots(const NodeVector<float>& residual_of_z) const;
-  double advance(const NodeVector<float>& residual_of_z, float beta, float alpha);
+  /// A direction that something proposes, and r - A z for r = cycle.right_side().
+  struct Proposal {
+    const NodeVector<float>& z;
+    const NodeVector<float>& residual;
+  };
+
+  Dots find_dots(const Proposal& proposal) const;
+  double advance(const Proposal& proposal, float beta, float alpha);
+  void search(const NodeVector<float>& guess, double target, SolveReport& report);
 
   Cycle<float>& cycle_;
   const Threads& threads_;
   NodeVector<float> x_, p_, q_;  ///< q = A p
+  double pq_ = 0;                ///< p . q; 0 before the first direction
 };
 
 }  // namespace softreel

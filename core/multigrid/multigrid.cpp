@@ -52,10 +52,13 @@ struct Multigrid::Levels {
   bool usable = false;  ///< the present cycle is positive definite
   ConjugateGradients solver;
   FloatSolver float_solver;
+  std::vector<NodeVector<float>> guesses;  ///< of float_solver, in the order of its level
   std::vector<Index> row_of_node;
 
   double mean_diagonal(std::span<const std::uint8_t> held) const;
   void eliminate(std::span<const std::uint8_t> held);
+  double square(std::span<const Vec3> vectors) const;
+  void scatter(std::span<const Vec3> vectors, double scale, NodeVector<float>& rows) const;
   double gather_correction(double scale, std::span<Vec3> y) const;
 };
 
@@ -95,6 +98,29 @@ void Multigrid::Levels::eliminate(std::span<const std::uint8_t> held) {
     float* const block = matrix.block(level.diagonal[row]);
     block[0] = block[4] = block[8] = diagonal;
   }
+}
+
+/// Sum of squares.
+double Multigrid::Levels::square(std::span<const Vec3> vectors) const {
+  const auto nodes = static_cast<std::int64_t>(vectors.size());
+  return threads.sum_chunks(nodes, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    double part = 0;
+    for (std::int64_t i = begin; i < end; ++i) part += vectors[static_cast<std::size_t>(i)].squaredNorm();
+    return part;
+  });
+}
+
+/// rows = scale * vectors, from mesh nodes to the rows of level 0.
+void Multigrid::Levels::scatter(std::span<const Vec3> vectors, double scale, NodeVector<float>& rows) const {
+  const auto nodes = static_cast<std::int64_t>(vectors.size());
+  threads.for_chunks(nodes, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t row = begin; row < end; ++row) {
+      const Index node = hierarchy.mesh_nodes[static_cast<std::size_t>(row)];
+      const Vec3 scaled = scale * vectors[static_cast<std::size_t>(node)];
+      lanes(rows, row) = NodeLanes<float>(static_cast<float>(scaled[0]), static_cast<float>(scaled[1]),
+                                          static_cast<float>(scaled[2]), 0);
+    }
+  });
 }
 
 /// y = scale * solution, by mesh nodes; returns |diag(A) y|.
@@ -172,27 +198,21 @@ bool Multigrid::update_in_float(std::span<const std::uint8_t> pinned, bool keep_
 }
 
 FloatCorrection Multigrid::correct_in_float(std::span<const Vec3> r, double target, int max_iterations,
-                                            std::span<Vec3> y) {
+                                            std::span<Vec3> y, std::span<const std::span<const Vec3>> guesses) {
   Levels& levels = *levels_;
-  const auto nodes = static_cast<std::int64_t>(r.size());
   CHECK(r.size() == levels.row_of_node.size());
   CHECK(y.size() == r.size());
-  const double norm = std::sqrt(levels.threads.sum_chunks(nodes, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
-    double part = 0;
-    for (std::int64_t i = begin; i < end; ++i) part += r[static_cast<std::size_t>(i)].squaredNorm();
-    return part;
-  }));
-  NodeVector<float>& right_side = levels.float_cycle.right_side();
-  levels.threads.for_chunks(nodes, kRowGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t row = begin; row < end; ++row) {
-      const Index node = levels.hierarchy.mesh_nodes[static_cast<std::size_t>(row)];
-      const Vec3 scaled = r[static_cast<std::size_t>(node)] / norm;
-      lanes(right_side, row) = NodeLanes<float>(static_cast<float>(scaled[0]), static_cast<float>(scaled[1]),
-                                                static_cast<float>(scaled[2]), 0);
-    }
-  });
+  const double norm = std::sqrt(levels.square(r));
+  levels.scatter(r, 1 / norm, levels.float_cycle.right_side());
+  levels.guesses.clear();
+  for (const std::span<const Vec3> guess : guesses) {
+    const double square = levels.square(guess);
+    if (!(square > 0) || !std::isfinite(square)) continue;
+    levels.guesses.emplace_back(levels.float_cycle.right_side().size());
+    levels.scatter(guess, 1 / std::sqrt(square), levels.guesses.back());
+  }
   FloatCorrection correction;
-  correction.report = levels.float_solver.solve(target / norm, max_iterations, levels.params.method);
+  correction.report = levels.float_solver.solve(target / norm, max_iterations, levels.params.method, levels.guesses);
   correction.rounding = kRoundingUnits * std::numeric_limits<float>::epsilon() * levels.gather_correction(norm, y);
   return correction;
 }

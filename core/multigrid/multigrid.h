@@ -95,7 +95,9 @@ class Multigrid {
   bool update_in_float(std::span<const std::uint8_t> pinned, bool keep_coarse = false);
 
   /// y = A^-1 r to |r - A y| <= target, all in float, where A is float_matrix(). r, y: per mesh node.
-  FloatCorrection correct_in_float(std::span<const Vec3> r, double target, int max_iterations, std::span<Vec3> y);
+  /// guesses: vectors that y may be near a combination of, per mesh node, zero on pinned ones; tried first.
+  FloatCorrection correct_in_float(std::span<const Vec3> r, double target, int max_iterations, std::span<Vec3> y,
+                                   std::span<const std::span<const Vec3>> guesses = {});
 
   std::vector<LevelInfo> levels() const;
 

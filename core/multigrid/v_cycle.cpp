@@ -115,6 +115,13 @@ const NodeVector<Scalar>& Cycle<Scalar>::find_residual_of_result() {
   return finest.r;
 }
 
+template <typename Scalar>
+const NodeVector<Scalar>& Cycle<Scalar>::find_residual_of(const NodeVector<Scalar>& x) {
+  Level& finest = *levels_.front();
+  finest.smoother->find_residual(finest.b, x, finest.r, threads_);
+  return finest.r;
+}
+
 /// x = cycle applied to b on level h.
 template <typename Scalar>
 void Cycle<Scalar>::cycle(std::size_t h) {

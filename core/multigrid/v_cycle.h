@@ -48,6 +48,8 @@ class Cycle {
   /// right_side() - A result() right after run(), for half a product by Gauss-Seidel and a whole one by other
   /// smoothers.
   const NodeVector<Scalar>& find_residual_of_result();
+  /// right_side() - A x.
+  const NodeVector<Scalar>& find_residual_of(const NodeVector<Scalar>& x);
 
   /// Bytes of level h: matrix, smoother, vectors, product plan, factors.
   std::int64_t bytes(std::size_t level) const;

@@ -69,6 +69,9 @@ std::string simulation_line(const RunReport& report) {
   std::string line = fmt::format("  simulation: {} body frames computed; {:.1f} solver iterations a frame",
                                  counts.computed, static_cast<double>(work.linear_iterations) / counts.computed);
   if (work.steps_at_rest > 0) line += fmt::format("; {} of {} steps left out at rest", work.steps_at_rest, work.steps);
+  if (work.kept_hierarchies > 0)
+    line += fmt::format("; {} hierarchies and {:.0f} % of the matrices kept", work.kept_hierarchies,
+                        100 * work.kept_matrices / static_cast<double>(work.steps));
   if (work.steps_rejected > 0)
     line += fmt::format("; {} steps, {} more taken in vain to keep the error", work.steps, work.steps_rejected);
   if (work.frames_unchanged > 0) line += fmt::format("; {} frames unchanged and not solved", work.frames_unchanged);
@@ -188,6 +191,8 @@ std::string to_json(const RunReport& report) {
                         {"steps_at_rest", simulation.work.steps_at_rest},
                         {"steps_rejected", simulation.work.steps_rejected},
                         {"frames_unchanged", simulation.work.frames_unchanged},
+                        {"kept_hierarchies", simulation.work.kept_hierarchies},
+                        {"kept_matrices", simulation.work.kept_matrices},
                         {"saved_seconds", simulation.saved_seconds}};
   json["simulation"]["recoveries"] = nlohmann::ordered_json::array();
   for (const FrameRecovery& recovery : simulation.recoveries)

@@ -92,8 +92,12 @@ const Table<Shot>& solver_table() {
              "step_error: the most steps of a frame. If they do not do, the run stops and says so.")
         .add("rest_tolerance", of_solver(&P::rest_tolerance), number({0, 1}), "",
              "dynamic: a body is not stepped if its velocities would move no point by more than this times its size, "
-             "its "
-             "forces balance to force_tolerance and its pins stay; 0: every body is stepped.")
+             "its forces balance to force_tolerance and its pins stay; 0: every body is stepped.")
+        .add("matrix_lag", of_solver(&P::matrix_lag), number({0, 1}), "",
+             "dynamic: within a frame, elements whose matrix would change by less than this times tolerance keep it; 0: "
+             "only where nothing changes.")
+        .add("keep_hierarchy", of_solver(&P::keep_hierarchy), toggle(), "",
+             "dynamic: within a frame, coarse levels stay while the solver needs no more iterations with them.")
         .add("tolerance", of_solver(&P::tolerance), number(kTolerance), "",
              "dynamic: residual of a step's linear solve over its right-hand side.")
         .add("force_tolerance", of_solver(&P::force_tolerance), number(kTolerance), "",

@@ -6,7 +6,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give other frames.
-constexpr const char* kSimulationVersion = "simulation 7";
+constexpr const char* kSimulationVersion = "simulation 8";
 
 void add(KeyHasher& key, const Transform& t) {
   key.add(t.translate).add(t.rotate).add(t.scale);
@@ -34,7 +34,7 @@ void add_steps(KeyHasher& key, const SolverParams& solver) {
   if (solver.integrator == Integrator::Newmark) key.add(solver.newmark.beta).add(solver.newmark.gamma);
   key.add(solver.step_error);
   if (solver.step_error > 0) key.add(frame_grid(solver).ticks_per_frame());
-  key.add(solver.rest_tolerance);
+  key.add(solver.rest_tolerance).add(solver.matrix_lag).add(solver.keep_hierarchy);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.previous_positions);
   out.put_array(frame.state.previous_velocities);
   out.put_array(frame.state.accelerations);
+  out.put_array(frame.state.previous_accelerations);
   out.put(frame.state.previous_error);
   out.put(frame.state.previous_seconds);
   out.put_array(frame.state.troubles);
@@ -37,6 +38,7 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
   frame.state.previous_positions = in.get_array<Vec3>();
   frame.state.previous_velocities = in.get_array<Vec3>();
   frame.state.accelerations = in.get_array<Vec3>();
+  frame.state.previous_accelerations = in.get_array<Vec3>();
   frame.state.previous_error = in.get<double>();
   frame.state.previous_seconds = in.get<double>();
   frame.state.troubles = in.get_array<ElementTrouble>();
@@ -60,6 +62,8 @@ SimulationWork& SimulationWork::operator+=(const SimulationWork& other) {
   steps_at_rest += other.steps_at_rest;
   steps_rejected += other.steps_rejected;
   frames_unchanged += other.frames_unchanged;
+  kept_hierarchies += other.kept_hierarchies;
+  kept_matrices += other.kept_matrices;
   return *this;
 }
 
@@ -198,7 +202,8 @@ void BodySimulation::advance(int frame, BodyFrame& result) {
   require_solved(report.last, frame);
   require_small_error(report, frame);
   result.work = {report.linear_iterations, report.nonlinear_iterations, report.steps,
-                 report.steps_at_rest,     report.steps_rejected,       0};
+                 report.steps_at_rest,     report.steps_rejected,       0,
+                 report.kept_hierarchies,  report.kept_matrices};
   result.recovering_elements = report.recovering_elements;
 }
 
@@ -207,7 +212,7 @@ SimulationWork BodySimulation::find_equilibrium(int frame) {
   simulator_holds_frame_ = false;
   const StepReport report = body.find_equilibrium(frame);
   require_solved(report, frame);
-  return {report.solve.iterations, report.nonlinear_iterations, 0, 0, 0, 0};
+  return {report.solve.iterations, report.nonlinear_iterations, 0, 0, 0, 0, 0, 0};
 }
 
 BodyFrame BodySimulation::simulated(int frame) {

@@ -21,6 +21,8 @@ struct SimulationWork {
   std::int64_t steps_at_rest = 0;     ///< of these, left out
   std::int64_t steps_rejected = 0;    ///< solved in vain, as their error was too great
   std::int64_t frames_unchanged = 0;  ///< static, left out: the constraints are those of the frame before
+  std::int64_t kept_hierarchies = 0;  ///< steps that took the coarse levels of an earlier one
+  double kept_matrices = 0;           ///< sum over the steps of the shares of their matrices that were kept
   SimulationWork& operator+=(const SimulationWork& other);
 };
 

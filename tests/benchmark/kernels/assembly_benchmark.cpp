@@ -25,7 +25,7 @@ void assemble(benchmark::State& state) {
   StepTerms terms;
   for (auto _ : state) {
     find_step_terms(body, {problem.positions, velocities, rotations, seconds, damping, {}}, terms, problem.threads);
-    assembler.assemble(terms, node_terms, problem.fine, problem.threads);
+    assembler.assemble(terms, node_terms, {}, problem.fine, problem.threads);
     benchmark::DoNotOptimize(problem.fine.values.data());
   }
   const auto tets = static_cast<std::int64_t>(problem.mesh.tets.size());

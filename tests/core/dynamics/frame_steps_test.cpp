@@ -217,6 +217,25 @@ TEST(Rest, LeavesABodyInBalanceToTheLastBitUntilItsPinMoves) {
   EXPECT_NE(bench.simulator.state().positions, balanced.positions);
 }
 
+TEST(Rest, EndsWhenAPullChanges) {
+  BodyModel model = carried_bar(1);
+  const std::vector<Index> end = testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() > 0.79; });
+  Pull pull = testing::make_pull(end, {}, 20);
+  pull.stiffness = {{{0, 20.0, Ease::Constant}, {4, 30.0, Ease::Constant}}};
+  model.pins[0].track = testing::constant(Transform{});
+  model.pulls = {pull};
+  Bench bench(model);
+  ASSERT_TRUE(bench.simulator.find_equilibrium(1).ok());
+  const auto rests = [&](int frame) {
+    return advance_to_frame(
+               bench.simulator, frame, kFps, [] {}, [](int) {})
+               .steps_at_rest == 1;
+  };
+  EXPECT_TRUE(rests(2));
+  EXPECT_TRUE(rests(3));
+  EXPECT_FALSE(rests(4));
+}
+
 TEST(Rest, IsNotTheTurnOfASwingNorABodyThatFalls) {
   SolverParams params;
   Bench falling(body_model(testing::kuhn_bar({2, 1, 1}, Vec3(0.4, 0.2, 0.2)), {4e4, 0.3, 1000, 0, 0}), params);

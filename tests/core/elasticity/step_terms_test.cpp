@@ -16,9 +16,10 @@ namespace {
 
 constexpr double kSeconds = 0.01;
 
-/// A deformed body that moves. The lattice has a number of elements that is no multiple of the lanes.
+/// A deformed body that moves. The lattice has several slabs, and a number of elements that is no multiple of the
+/// lanes.
 struct Moving {
-  Moving(bool one_material, double noise) : threads(4), mesh(testing::bcc_bar({5, 4, 3}, 0.1)) {
+  Moving(bool one_material, double noise) : threads(4), mesh(testing::bcc_bar({8, 6, 5}, 0.1)) {
     mesh.tets.pop_back();
     std::vector<ElementMaterial> materials(mesh.tets.size());
     if (!one_material)
@@ -33,6 +34,7 @@ struct Moving {
       velocities.push_back(vector());
       node_terms.push_back(1 + std::abs(normal(random)));
     }
+    EXPECT_GT(body.node_slabs.slab_offsets.size(), 3U);
     rotations.assign(mesh.tets.size(), Quaternion::Identity());
     find_rotations(body, RotationMethod::Consistent, positions, rotations, threads);
     for (std::size_t e = 0; e < mesh.tets.size(); ++e) damping.push_back(0.002 * static_cast<double>(e % 5));
@@ -90,7 +92,7 @@ TEST(StepTerms, GiveTheForcesOfTheScalarFunctions) {
       const Moving moving(one_material, noise);
       const std::vector<Vec3> expected = expected_forces(moving);
       std::vector<Vec3> forces(expected.size());
-      gather_step_forces(moving.body.node_elements, moving.terms(1), forces, moving.threads);
+      gather_step_forces(moving.body, moving.terms(1), forces, moving.threads);
       double scale = 0;
       for (const Vec3& f : expected) scale = std::max(scale, f.norm());
       for (std::size_t i = 0; i < forces.size(); ++i) EXPECT_LT((forces[i] - expected[i]).norm(), 1e-12 * scale);
@@ -110,7 +112,7 @@ TEST(StepTerms, GoOnFromTheirPositionsByTheOffsets) {
     find_step_terms(moving.body,
                     {moving.positions, velocities, moving.rotations, seconds, moving.damping, with_offsets}, terms,
                     moving.threads);
-    gather_step_forces(moving.body.node_elements, terms, f, moving.threads);
+    gather_step_forces(moving.body, terms, f, moving.threads);
   };
   find(moving.velocities, {}, expected);
   find(still, offsets, forces);
@@ -122,7 +124,7 @@ TEST(StepTerms, GoOnFromTheirPositionsByTheOffsets) {
 TEST(StepTerms, SumToNoForce) {
   const Moving moving(false, 0.02);
   std::vector<Vec3> forces(moving.mesh.nodes.size());
-  gather_step_forces(moving.body.node_elements, moving.terms(1), forces, moving.threads);
+  gather_step_forces(moving.body, moving.terms(1), forces, moving.threads);
   Vec3 sum = Vec3::Zero();
   double scale = 0;
   for (const Vec3& f : forces) {
@@ -147,7 +149,7 @@ BlockMatrixf assembled_in_float(const Moving& moving, const std::vector<Index>& 
   BlockMatrixf matrix{stiffness_pattern(renumbered, static_cast<Index>(row_of_node.size())), {}};
   reserve_values(matrix);
   const FloatAssembler assembler(moving.mesh.tets, moving.body.node_elements, matrix.pattern, row_of_node);
-  assembler.assemble(moving.terms(thread_count), moving.node_terms, matrix, Threads(thread_count));
+  assembler.assemble(moving.terms(thread_count), moving.node_terms, {}, matrix, Threads(thread_count));
   return matrix;
 }
 
@@ -191,8 +193,8 @@ TEST(StepTerms, HaveTheSameBitsOnOneAndFourThreads) {
   EXPECT_EQ(assembled_in_float(moving, row_of_node, 1).values, assembled_in_float(moving, row_of_node, 4).values);
   const StepTerms one = moving.terms(1), four = moving.terms(4);
   std::vector<Vec3> a(moving.mesh.nodes.size()), b(a.size());
-  gather_step_forces(moving.body.node_elements, one, a, Threads(1));
-  gather_step_forces(moving.body.node_elements, four, b, Threads(4));
+  gather_step_forces(moving.body, one, a, Threads(1));
+  gather_step_forces(moving.body, four, b, Threads(4));
   EXPECT_EQ(a, b);
 }
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -67,6 +69,71 @@ TEST(FloatSolver, SolvesInFloatInAsManyIterationsAsInDouble) {
     solutions.push_back(y);
   }
   EXPECT_EQ(solutions[0], solutions[1]);
+}
+
+/// A system in float, ready to be solved.
+struct FloatProblem {
+  FloatProblem() : mesh(make_box({24, 6, 6}, 0.04)), threads(2) {
+    ElasticParams params;
+    params.seconds = 0.01;
+    system = assemble(mesh, params, at_left_end);
+    multigrid.emplace(mesh, std::span<const double>(), system.matrix.pattern, MultigridParams{}, threads);
+    fill_float_matrix(*multigrid, system.matrix);
+    EXPECT_TRUE(multigrid->update_in_float(system.pinned));
+    for (const Vec3& b : system.load) norm += b.squaredNorm();
+    norm = std::sqrt(norm);
+  }
+
+  /// The result, which goes to y.
+  FloatCorrection solve(double tolerance, std::span<const std::span<const Vec3>> guesses) {
+    y.assign(mesh.nodes.size(), Vec3::Zero());
+    return multigrid->correct_in_float(system.load, tolerance * norm, 50, y, guesses);
+  }
+
+  TetMesh mesh;
+  Threads threads;
+  ElasticSystem system;
+  std::optional<Multigrid> multigrid;
+  double norm = 0;
+  std::vector<Vec3> y;
+};
+
+TEST(FloatSolver, NeedsNoCycleWhereGuessesSpanTheSolution) {
+  FloatProblem problem;
+  const int plain = problem.solve(1e-6, {}).report.iterations;
+  EXPECT_GE(plain, 5);
+  const std::vector<Vec3> solution = problem.y;
+  std::vector<Vec3> one(solution.size()), other(solution.size());
+  for (std::size_t i = 0; i < solution.size(); ++i) {
+    const double share = 0.5 + 0.5 * std::sin(20 * problem.mesh.nodes[i].x());
+    one[i] = -3e5 * share * solution[i];  // a direction: neither its sign nor its length matters
+    other[i] = (1 - share) * solution[i];
+  }
+  const std::span<const Vec3> whole[] = {solution}, halves[] = {one, other};
+  for (const auto guesses :
+       {std::span<const std::span<const Vec3>>(whole), std::span<const std::span<const Vec3>>(halves)}) {
+    const FloatCorrection found = problem.solve(1e-4, guesses);
+    EXPECT_EQ(found.report.status, SolveStatus::Converged);
+    EXPECT_EQ(found.report.iterations, 0);
+    EXPECT_LE(test_support::relative_residual(problem.system.matrix, problem.system.load, problem.y),
+              1e-4 + found.rounding / problem.norm);
+  }
+}
+
+TEST(FloatSolver, IsNotMisledByGuesses) {
+  FloatProblem problem;
+  const int plain = problem.solve(1e-6, {}).report.iterations;
+  const std::vector<Vec3> expected = problem.y, zero(expected.size(), Vec3::Zero());
+  std::vector<Vec3> rough(expected.size()), broken = expected;
+  for (std::size_t i = 0; i < rough.size(); ++i)
+    rough[i] = problem.system.pinned[i] != 0 ? Vec3(Vec3::Zero()) : Vec3(i % 2 == 0 ? 1 : -1, i % 3, i % 5);
+  broken.back()[0] = std::numeric_limits<double>::infinity();
+  const std::span<const Vec3> useless[] = {zero, broken, {}}, bad[] = {rough, rough};
+  EXPECT_EQ(problem.solve(1e-6, useless).report.iterations, plain);
+  EXPECT_EQ(problem.y, expected);
+  const FloatCorrection found = problem.solve(1e-6, bad);
+  EXPECT_EQ(found.report.status, SolveStatus::Converged);
+  EXPECT_LE(found.report.iterations, plain + 1);
 }
 
 TEST(FloatSolver, RefusesInFloatWhatIsNotDefinite) {

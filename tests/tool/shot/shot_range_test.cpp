@@ -48,6 +48,7 @@ TEST_F(ShotRanges, EndWhereTheReferenceSays) {
       {"solver.step_error", {"0", "1"}, {"-1e-9", "1.001"}},
       {"solver.max_substeps", {"1", "65536"}, {"0", "65537"}},
       {"solver.rest_tolerance", {"0", "1"}, {"-1e-9", "1.001"}},
+      {"solver.matrix_lag", {"0", "1"}, {"-1e-9", "1.001"}},
       {"solver.tolerance", {"1e-16", "1"}, {"0", "1.001"}},
       {"solver.force_tolerance", {"1e-16", "1"}, {"0", "1.001"}},
       {"solver.max_iterations", {"1", "1000000"}, {"0", "1000001"}},

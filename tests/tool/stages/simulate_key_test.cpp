@@ -144,6 +144,8 @@ TEST(FrameKey, PhysicsChangesEveryFrame) {
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.linearize = Linearize::Predictor; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.step_error = 1e-3; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.rest_tolerance = 0; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.matrix_lag = 0; }), 1);
+  EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.keep_hierarchy = false; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.force_tolerance = 1e-5; }), 1) << "of rest";
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.rotation = RotationMethod::Energy; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.gravity.y() = -1.62; }), 1);
