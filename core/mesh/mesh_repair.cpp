@@ -8,6 +8,7 @@
 
 #include "core/mesh/mesh_topology.h"
 #include "core/mesh/shell_nesting.h"
+#include "core/mesh/vertex_joining.h"
 
 namespace softreel {
 namespace {
@@ -245,8 +246,14 @@ void turn_outward(SurfaceMesh& mesh, const std::vector<HalfEdge>& sides, const s
 
 std::vector<std::string> repair_mesh(SurfaceMesh& mesh) {
   std::vector<std::string> lines;
-  const std::vector<Index> weld = weld_positions(mesh.positions);
   remove_not_finite(mesh, lines);
+  std::int64_t joined = 0;
+  const std::vector<Index> weld = join_vertices(mesh, joined);
+  if (joined > 0) {
+    mesh.joined = weld;
+    lines.push_back(
+        fmt::format("{} vertex place(s) on open edges joined with others less than 1e-5 of the size away", joined));
+  }
   remove_collapsed(mesh, weld, lines);
   remove_duplicates(mesh, weld, lines);
   const std::vector<HalfEdge> given = sorted_half_edges(welded_triangles(mesh, weld));

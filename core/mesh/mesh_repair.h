@@ -10,6 +10,7 @@ namespace softreel {
 
 /// Repairs `triangles` (with triangle_polygon and triangle_textures) in place; vertices, polygons, groups and their
 /// order are the file's and stay. Returns one line for each kind of repair that changed something. In this order:
+/// - rims that nearly meet are joined (see join_vertices), by SurfaceMesh::joined alone;
 /// - triangles with vertices that are not finite, or with two corners in one place, are removed. Triangles without area
 ///   but with three distinct corners stay: they close the surface;
 /// - of triangles on the same three places the first one stays; a wall inside of a body whose faces are there once for

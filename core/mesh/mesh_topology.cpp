@@ -47,23 +47,4 @@ std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> welded) {
   return sides;
 }
 
-DisjointSets::DisjointSets(std::size_t count) : parent_(count) {
-  std::iota(parent_.begin(), parent_.end(), 0);
-}
-
-Index DisjointSets::root(Index member) {
-  const auto parent = [&](Index i) -> Index& { return parent_[static_cast<std::size_t>(i)]; };
-  while (parent(member) != member) {
-    parent(member) = parent(parent(member));
-    member = parent(member);
-  }
-  return member;
-}
-
-void DisjointSets::join(Index a, Index b) {
-  a = root(a);
-  b = root(b);
-  if (a != b) parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-}
-
 }  // namespace softreel

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/mesh/disjoint_sets.h"
 #include "core/mesh/surface_mesh.h"
 
 namespace softreel {
@@ -37,17 +38,6 @@ void for_each_edge(std::span<const HalfEdge> half_edges, const Body& body) {
     body(half_edges.subspan(begin, end - begin));
   }
 }
-
-/// Disjoint sets with path halving; the root of a set is its smallest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count);
-  Index root(Index member);
-  void join(Index a, Index b);
-
- private:
-  std::vector<Index> parent_;
-};
 
 /// Six times the signed volume under triangle (a, b, c) as seen from the origin.
 inline double signed_volume6(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -34,6 +34,10 @@ struct SurfaceMesh {
   PolygonList polygons;                   ///< as in the file
   std::vector<VertexGroup> groups;
 
+  /// Per vertex the one that it counts as where triangles are connected; empty: the first of exactly its position.
+  /// Filled by repair_mesh where rims nearly meet.
+  std::vector<Index> joined;
+
   std::vector<Triangle> triangles;          ///< polygons cut into triangles
   std::vector<Index> triangle_polygon;      ///< polygon of each triangle
   std::vector<Triangle> triangle_textures;  ///< per triangle corner, -1 for none; empty if the file has none

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/tetmesh/disjoint_sets.h"
+#include "core/mesh/disjoint_sets.h"
 
 namespace softreel {
 namespace {
@@ -73,9 +73,10 @@ void remove_pieces(StuffedMesh& stuffed, const Pieces& pieces, const std::vector
 }
 
 /// An edge length with which a part that vanished should appear: 2 V / A is the thickness of a plate, the radius of a
-/// rod and two thirds of that of a ball, and each then holds lattice nodes.
-double needed_edge(const SurfacePart& part) {
-  return 2.0 * std::abs(part.volume) / part.area;
+/// rod and two thirds of that of a ball, and each then holds lattice nodes. A cavity may leave less of it: then half of
+/// the edge that was too long.
+double needed_edge(const SurfacePart& part, double edge) {
+  return std::min(2.0 * std::abs(part.volume) / part.area, 0.5 * edge);
 }
 
 }  // namespace
@@ -129,10 +130,15 @@ void require_all_parts(const StuffedMesh& stuffed, const SurfaceDistance& distan
       log.warn(fmt::format("body '{}': {} encloses no volume and has no tetrahedra", name, where));
       continue;
     }
+    if (part.open)
+      throw input_error(fmt::format(
+          "body '{}': {} is open and encloses nothing that an edge of {:.4g} m sees. Accepted: a surface that encloses "
+          "a volume, or an open sheet with a thickness. Set thickness, close the surface, or take the part out of it.",
+          name, where, stuffed.mesh.lattice.spacing));
     throw input_error(fmt::format(
         "body '{}': {} is too thin for the lattice: an edge of {:.4g} m leaves it without a tetrahedron. Accepted: an "
         "edge of about {:.2g} m or less. Set a smaller edge or more tets, or take the part out of the surface.",
-        name, where, stuffed.mesh.lattice.spacing, needed_edge(part)));
+        name, where, stuffed.mesh.lattice.spacing, needed_edge(part, stuffed.mesh.lattice.spacing)));
   }
 }
 

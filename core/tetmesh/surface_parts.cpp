@@ -5,7 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "core/tetmesh/disjoint_sets.h"
+#include "core/mesh/mesh_topology.h"
+#include "core/tetmesh/key_index.h"
 
 namespace softreel {
 namespace {
@@ -36,6 +37,39 @@ void measure_parts(const SurfaceMesh& surface, SurfaceParts& found) {
   }
 }
 
+/// Welded vertices of edges whose triangles do not run along them as often in one direction as in the other.
+std::vector<Index> find_rims(const std::vector<Triangle>& welded) {
+  std::vector<Index> rims;
+  const std::vector<HalfEdge> sides = sorted_half_edges(welded);
+  for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
+    const auto forward = std::count_if(edge.begin(), edge.end(), [](const HalfEdge& side) { return side.forward; });
+    if (2 * static_cast<std::size_t>(forward) != edge.size()) rims.insert(rims.end(), {edge[0].low, edge[0].high});
+  });
+  std::sort(rims.begin(), rims.end());
+  rims.erase(std::unique(rims.begin(), rims.end()), rims.end());
+  return rims;
+}
+
+/// Joins sets with vertices in one cell of either of two grids that are half a cell apart: about a hundredth of the
+/// box.
+void join_near_rims(const SurfaceMesh& surface, const std::vector<Index>& rims, DisjointSets& sets) {
+  const Bounds box = used_bounds(surface);
+  const double cell = 0.01 * box.diagonal();
+  if (!(cell > 0)) return;
+  for (const double shift : {0.0, 0.5}) {
+    KeyIndex cells;
+    std::vector<Index> first;
+    for (const Index vertex : rims) {
+      const Vec3 place = (surface.positions[at(vertex)] - box.min) / cell + Vec3::Constant(shift);
+      std::uint64_t key = 0;
+      for (int k = 0; k < 3; ++k) key = key << 10 | static_cast<std::uint64_t>(place[k]);
+      const auto [index, is_new] = cells.insert(key);
+      if (is_new) first.push_back(vertex);
+      sets.join(first[at(index)], vertex);
+    }
+  }
+}
+
 }  // namespace
 
 double SurfaceParts::area() const {
@@ -51,14 +85,16 @@ double SurfaceParts::volume() const {
 }
 
 SurfaceParts find_parts(const SurfaceMesh& surface) {
-  const std::vector<Index> weld = weld_positions(surface.positions);
+  const std::vector<Triangle> welded = welded_triangles(surface);
   DisjointSets sets(surface.positions.size());
-  for (const Triangle& triangle : surface.triangles)
-    for (std::size_t k = 1; k < 3; ++k) sets.join(weld[at(triangle[0])], weld[at(triangle[k])]);
+  for (const Triangle& triangle : welded)
+    for (std::size_t k = 1; k < 3; ++k) sets.join(triangle[0], triangle[k]);
+  const std::vector<Index> rims = find_rims(welded);
+  join_near_rims(surface, rims, sets);
   SurfaceParts found;
   std::vector<Index> number(surface.positions.size(), -1), first_vertices;
-  for (const Triangle& triangle : surface.triangles) {
-    Index& part = number[at(sets.root(weld[at(triangle[0])]))];
+  for (const Triangle& triangle : welded) {
+    Index& part = number[at(sets.root(triangle[0]))];
     if (part < 0) {
       part = static_cast<Index>(first_vertices.size());
       first_vertices.push_back(triangle[0]);
@@ -66,6 +102,7 @@ SurfaceParts find_parts(const SurfaceMesh& surface) {
     found.triangle_parts.push_back(part);
   }
   found.parts.resize(first_vertices.size());
+  for (const Index vertex : rims) found.parts[at(number[at(sets.root(vertex))])].open = true;
   measure_parts(surface, found);
   for (std::size_t p = 0; p < found.parts.size(); ++p) {
     const std::string group = group_of(surface, first_vertices[p]);

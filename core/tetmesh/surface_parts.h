@@ -8,13 +8,15 @@
 
 namespace softreel {
 
-/// Triangles that are joined through vertices of equal position.
+/// Triangles that are joined through vertices of equal position; open ones also where they nearly meet, so that a soup
+/// of triangles is one part.
 struct SurfacePart {
   Index triangles = 0;
   double volume = 0;  ///< signed, m^3: negative if inside out, or a cavity
   double area = 0;    ///< m^2
   Bounds box;
-  std::string name;  ///< for messages: "part 2 of 3 (group 'eye_L', 320 triangles)"
+  bool open = false;  ///< has edges that are not used as often in one direction as in the other
+  std::string name;   ///< for messages: "part 2 of 3 (group 'eye_L', 320 triangles)"
 };
 
 struct SurfaceParts {

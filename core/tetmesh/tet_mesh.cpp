@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/tetmesh/disjoint_sets.h"
+#include "core/mesh/disjoint_sets.h"
 
 namespace softreel {
 namespace {

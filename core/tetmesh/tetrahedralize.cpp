@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/tetmesh/boundary_mending.h"
 #include "core/tetmesh/mesh_pieces.h"
+#include "core/tetmesh/sheet_shells.h"
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/thin_parts.h"
 
@@ -173,14 +174,49 @@ void require_params(const SurfaceMesh& surface, const TetrahedralizeParams& para
                     name));
 }
 
+/// The surface with joined vertices in one place, and with its open parts thickened.
+SurfaceMesh prepare(const SurfaceMesh& surface, double thickness, const std::string& name, const Log& log) {
+  SurfaceMesh prepared;
+  prepared.positions = surface.positions;
+  prepared.triangles = surface.triangles;
+  prepared.groups = surface.groups;
+  for (std::size_t v = 0; v < surface.joined.size(); ++v)
+    prepared.positions[v] = surface.positions[static_cast<std::size_t>(surface.joined[v])];
+  if (thickness > 0)
+    if (const std::int64_t open = thicken_sheets(prepared, find_parts(prepared), thickness); open > 0)
+      log.info(
+          fmt::format("body '{}': {} triangles of open parts became sheets {:.4g} m thick", name, open, thickness));
+  return prepared;
+}
+
+/// A flat surface has no volume with any lattice, and a size by count would ask for a lattice without end.
+void require_volume(const Job& job) {
+  constexpr double kFlat = 1e-9;  // of the area to the power of 3/2; a ball has 0.094
+  double volume = 0, area = 0;
+  bool open = false;
+  for (const SurfacePart& part : job.parts.parts) {
+    volume += std::abs(part.volume);
+    area += part.area;
+    open = open || part.open;
+  }
+  if (volume > kFlat * std::pow(area, 1.5)) return;
+  throw input_error(
+      fmt::format("body '{}': its surface is {}, so it encloses no volume. Accepted: a surface that encloses a volume, "
+                  "or an open sheet with a thickness. {}.",
+                  job.name, area > 0 ? "flat" : "no more than points and lines",
+                  open && area > 0 ? "Set thickness" : "Check the mesh file"));
+}
+
 }  // namespace
 
 TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name,
                        const Threads& threads, const Log& log, StageTimes& times) {
   require_params(surface, params, name);
-  const SurfaceParts parts = find_parts(surface);
-  const Bounds box = used_bounds(surface);
-  const Job job{surface, parts, box, name, threads, log, times};
+  const SurfaceMesh prepared = prepare(surface, params.thickness, name, log);
+  const SurfaceParts parts = find_parts(prepared);
+  const Bounds box = used_bounds(prepared);
+  const Job job{prepared, parts, box, name, threads, log, times};
+  require_volume(job);
   StuffedMesh stuffed =
       params.edge > 0 ? fill_surface(job, params.edge) : fill_with_count(job, static_cast<double>(params.tets));
   if (stuffed.mesh.tets.empty())

@@ -16,6 +16,7 @@ namespace softreel {
 struct TetrahedralizeParams {
   double edge = 0;        ///< long edge of the lattice, m
   std::int64_t tets = 0;  ///< wanted number of tetrahedra, met within 5 %
+  double thickness = 0;   ///< of the open parts of the surface, m; 0: they count as closed where they nearly are
 };
 
 /// Fills a closed surface with tetrahedra by isosurface stuffing of a BCC lattice (Labelle and Shewchuk 2007).

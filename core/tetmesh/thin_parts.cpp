@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/tetmesh/disjoint_sets.h"
+#include "core/mesh/disjoint_sets.h"
 #include "core/tetmesh/isosurface_stuffing.h"
 
 namespace softreel {

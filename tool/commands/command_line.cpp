@@ -138,6 +138,8 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
       ->check(CLI::Range(10L, 100000000L))
       ->excludes(edge);
+  tets->add_option("--thickness", options.thickness, "make open sheets this thick, in the mesh's unit after fit")
+      ->check(CLI::PositiveNumber);
   tets->add_option("--fit", options.fit, "scale the mesh to this height first, m")->check(CLI::PositiveNumber);
   tets->add_option("--threads", options.threads, "number of threads [all processors]")->check(CLI::Range(1, 1024));
   tets->add_flag("--quiet", options.quiet, "print warnings and errors only");

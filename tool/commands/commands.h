@@ -75,7 +75,7 @@ int run_inspect(const InspectOptions& options);
 
 struct TetrahedralizeOptions {
   std::string mesh, output;
-  double edge = 0, fit = 0;
+  double edge = 0, fit = 0, thickness = 0;
   long tets = 0;
   int threads = 0;
   bool quiet = false, json = false;

@@ -114,7 +114,10 @@ void add_placement_fields(Table<BodySettings>& t) {
       .add("tets", &B::tets, absent_if_zero(whole<std::int64_t>(1, kMostTets)), "",
            "About how many tetrahedra fill the body; instead of edge.", std::to_string(kDefaultTets))
       .add("edge", &B::edge, absent_if_zero(number(kPositive)), "m", "Longest edge of the tetrahedra; instead of tets.",
-           "from tets");
+           "from tets")
+      .add("thickness", &B::thickness, absent_if_zero(number(kPositive)), "m",
+           "Of open sheets in the surface, which then become solid.",
+           "open parts count as closed where they nearly are");
 }
 
 void check_body(const Place& place, const TomlValue& value, BodySettings& body) {

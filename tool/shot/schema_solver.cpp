@@ -93,9 +93,10 @@ const Table<Shot>& solver_table() {
         .add("rest_tolerance", of_solver(&P::rest_tolerance), number({0, 1}), "",
              "dynamic: a body is not stepped if its velocities would move no point by more than this times its size, "
              "its forces balance to force_tolerance and its pins stay; 0: every body is stepped.")
-        .add("matrix_lag", of_solver(&P::matrix_lag), number({0, 1}), "",
-             "dynamic: within a frame, elements whose matrix would change by less than this times tolerance keep it; 0: "
-             "only where nothing changes.")
+        .add(
+            "matrix_lag", of_solver(&P::matrix_lag), number({0, 1}), "",
+            "dynamic: within a frame, elements whose matrix would change by less than this times tolerance keep it; 0: "
+            "only where nothing changes.")
         .add("keep_hierarchy", of_solver(&P::keep_hierarchy), toggle(), "",
              "dynamic: within a frame, coarse levels stay while the solver needs no more iterations with them.")
         .add("tolerance", of_solver(&P::tolerance), number(kTolerance), "",

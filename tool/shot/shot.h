@@ -86,6 +86,7 @@ struct BodySettings {
   Vec3 rotate_deg = Vec3::Zero();  ///< about x, then y, then z
   std::string material;            ///< name
   double edge = 0;                 ///< m; or
+  double thickness = 0;            ///< m, of open sheets; 0: none
   std::int64_t tets = 0;           ///< number of tetrahedra; one of the two is set
   std::vector<RegionSettings> regions;
   std::vector<PinSettings> pins;

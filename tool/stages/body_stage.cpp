@@ -18,7 +18,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same surface would give other tetrahedra or another embedding.
-constexpr const char* kFillVersion = "tetrahedra 1";
+constexpr const char* kFillVersion = "tetrahedra 2";
 
 PlacementParams placement_params(const BodySettings& body) {
   PlacementParams params;
@@ -119,7 +119,7 @@ LoadedBody load_body(const BodySettings& body, const RunContext& context) {
 }
 
 StageKey filled_key(const BodySettings& body, const LoadedBody& loaded) {
-  return KeyHasher(kFillVersion).add(loaded.key).add(body.edge).add(body.tets).key();
+  return KeyHasher(kFillVersion).add(loaded.key).add(body.edge).add(body.tets).add(body.thickness).key();
 }
 
 FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const StageKey& key,
@@ -127,8 +127,8 @@ FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const S
   FilledBody filled;
   filled.normals = vertex_normals(loaded.surface, loaded.surface.positions);
   const auto fill = [&] {
-    filled.mesh =
-        tetrahedralize(loaded.surface, {body.edge, body.tets}, body.name, context.threads, context.log, context.times);
+    filled.mesh = tetrahedralize(loaded.surface, {body.edge, body.tets, body.thickness}, body.name, context.threads,
+                                 context.log, context.times);
     const ScopedStage stage(context.times, "tetrahedralize/embed");
     filled.embedding = embed_points(loaded.surface.positions, filled.normals, filled.mesh, context.threads);
     return pack(filled);

@@ -89,6 +89,7 @@ translate = [0.1, 0.2, 0.3]
 rotate_deg = [10, 20, 30]
 material = "rubber"
 edge = 0.03
+thickness = 0.02
 
 [[body.second_by_name.region]]
 select = [

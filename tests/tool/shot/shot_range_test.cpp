@@ -22,6 +22,7 @@ TEST_F(ShotRanges, EndWhereTheReferenceSays) {
       {"body.fit", positive, above_zero},
       {"body.scale", positive, above_zero},
       {"body.edge", positive, above_zero},
+      {"body.thickness", positive, above_zero},
       {"body.tets", {"1", "500000000"}, {"0", "500000001", "9223372036854775807", "1e19"}},
       {"body.region[0].stiffness", positive, above_zero},
       {"body.pull[0].stiffness", not_negative, negative},
