@@ -4,8 +4,6 @@
 #include <cmath>
 #include <functional>
 
-#include "core/base/error.h"
-#include "core/base/part.h"
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/narrow_band.h"
 #include "core/tetmesh/row_crossings.h"
@@ -21,28 +19,6 @@ constexpr std::int64_t kGrain = 256;
 
 /// A lattice node with its distance, which is signed once it is known; nearest is -1 beyond the band.
 using KnownNode = BandNode;
-
-#if SOFTREEL_WITH_OPENVDB
-
-std::vector<KnownNode> narrow_band(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                                   const LatticeFrame& frame, const Threads& threads) {
-  static const auto measure = part_function<&softreel_measure_narrow_band>("openvdb", "softreel_measure_narrow_band");
-  std::vector<KnownNode> band;
-  threads.run([&] { measure(positions, triangles, frame, band); });
-  return band;
-}
-
-#else
-
-std::vector<KnownNode> narrow_band(const std::vector<Vec3>& /*positions*/, const std::vector<Triangle>& /*triangles*/,
-                                   const LatticeFrame& /*frame*/, const Threads& /*threads*/) {
-  throw input_error(
-      "tetrahedra from a surface: this build has no OpenVDB, which measures the distance to the surface (it was "
-      "configured with SOFTREEL_WITH_OPENVDB=OFF or did not find it). Accepted: a build with OpenVDB. Configure with "
-      "-DSOFTREEL_WITH_OPENVDB=ON, or give the body ready-made tetrahedra (.mesh, .msh, .vtu).");
-}
-
-#endif
 
 /// Whether every edge is used as often in one direction as in the other. Then winding numbers are integers, and the
 /// sign changes nowhere but at the surface.
@@ -107,7 +83,7 @@ void add_neighbors(std::vector<KnownNode>& nodes, LatticeNodeSet& known,
 
 SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                  const LatticeFrame& frame, const Threads& threads) {
-  std::vector<KnownNode> nodes = narrow_band(positions, triangles, frame, threads);
+  std::vector<KnownNode> nodes = measure_narrow_band(positions, triangles, frame, threads);
   SurfaceDistance result;
   LatticeNodeSet& known = result.lattice.nodes;
   for (const KnownNode& node : nodes) known.insert(node.node);

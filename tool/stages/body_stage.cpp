@@ -18,7 +18,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same surface would give other tetrahedra or another embedding.
-constexpr const char* kFillVersion = "tetrahedra 1";
+constexpr const char* kFillVersion = "tetrahedra 2";
 
 PlacementParams placement_params(const BodySettings& body) {
   PlacementParams params;
