@@ -7,6 +7,7 @@
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
 #include "core/tetmesh/mesh_pieces.h"
 #include "core/tetmesh/tet_quality.h"
@@ -188,6 +189,10 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
         fmt::format("body '{}': its surface encloses no volume that a lattice with edge {:.4g} m can fill. "
                     "Accepted: a surface that encloses a volume. Close or thicken it, or use a smaller edge.",
                     name, stuffed.mesh.lattice.spacing));
+  {
+    const ScopedStage stage(times, "tetrahedralize/fit");
+    fit_boundary(stuffed, surface, {}, threads);
+  }
   require_quality(job, stuffed.mesh);
   return std::move(stuffed.mesh);
 }

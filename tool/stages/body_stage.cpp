@@ -18,7 +18,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same surface would give other tetrahedra or another embedding.
-constexpr const char* kFillVersion = "tetrahedra 2";
+constexpr const char* kFillVersion = "tetrahedra 3";
 
 PlacementParams placement_params(const BodySettings& body) {
   PlacementParams params;
