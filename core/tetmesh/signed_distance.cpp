@@ -107,4 +107,40 @@ SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::
   return result;
 }
 
+DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                                 const LatticeFrame& frame)
+    : frame_(frame), tree_(positions, triangles) {
+  if (is_closed(positions, triangles))
+    crossings_.emplace(positions, triangles, frame);
+  else
+    winding_.emplace(positions, triangles);
+}
+
+SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, double reach, const Threads& threads) const {
+  const std::vector<LatticeNode>& list = nodes.nodes();
+  SurfaceDistance result;
+  result.lattice.frame = frame_;
+  result.lattice.nodes = nodes;
+  result.lattice.values.resize(list.size());
+  result.nearest_triangles.resize(list.size());
+  threads.for_chunks(static_cast<std::int64_t>(list.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const Vec3 p = lattice_position(frame_, list[i]);
+      const TriangleTree::Nearest found = tree_.nearest(p, reach * reach, [](Index, const Vec3&) { return true; });
+      double distance = std::sqrt(found.squared_distance);
+      bool inside = false;
+      if (crossings_) {
+        inside = crossings_->winding(list[i]) != 0;
+      } else {
+        const double beyond = std::abs((*winding_)(p)) - 0.5;
+        distance = std::min(distance, 0.5 * frame_.spacing * kHoleSlope * std::abs(beyond));
+        inside = beyond > 0;
+      }
+      result.lattice.values[i] = inside ? -distance : distance;
+      result.nearest_triangles[i] = found.triangle;
+    }
+  });
+  return result;
+}
+
 }  // namespace softreel

@@ -4,11 +4,15 @@
 /// surface is open, so that dirty surfaces have an inside too.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/base/parallel.h"
 #include "core/base/types.h"
 #include "core/tetmesh/lattice_nodes.h"
+#include "core/tetmesh/row_crossings.h"
+#include "core/tetmesh/triangle_tree.h"
+#include "core/tetmesh/winding_number.h"
 
 namespace softreel {
 
@@ -24,5 +28,24 @@ struct SurfaceDistance {
 /// Cost: the band and the inside, never the bounding box.
 SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                  const LatticeFrame& frame, const Threads& threads);
+
+/// The same for nodes of any choice: those of an octree, whose sizes differ.
+class DistanceSampler {
+ public:
+  /// frame: the finest lattice, which all nodes belong to.
+  DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                  const LatticeFrame& frame);
+
+  /// Distances of all `nodes` (numbered), m; at most `reach` where the sign is beyond doubt.
+  SurfaceDistance sample(const LatticeNodeSet& nodes, double reach, const Threads& threads) const;
+
+  const TriangleTree& tree() const { return tree_; }
+
+ private:
+  LatticeFrame frame_;
+  TriangleTree tree_;
+  std::optional<RowCrossings> crossings_;  ///< of a closed surface
+  std::optional<WindingNumber> winding_;   ///< of an open one
+};
 
 }  // namespace softreel

@@ -135,9 +135,13 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   tets->add_option("-o,--output", options.output, "file to write: .vtu, .msh (Gmsh 2.2) or .mesh (Medit)")->required();
   CLI::Option* edge = tets->add_option("--edge", options.edge, "long edge of the lattice, in the mesh's unit")
                           ->check(CLI::PositiveNumber);
-  tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
-      ->check(CLI::Range(10L, 100000000L))
-      ->excludes(edge);
+  CLI::Option* count = tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
+                           ->check(CLI::Range(10L, 100000000L))
+                           ->excludes(edge);
+  tets->add_option("--error", options.error,
+                   "distance to the surface to keep to: in the mesh's unit, or as 0.3% of its box's diagonal; graded")
+      ->excludes(edge)
+      ->excludes(count);
   tets->add_option("--fit", options.fit, "scale the mesh to this height first, m")->check(CLI::PositiveNumber);
   tets->add_option("--threads", options.threads, "number of threads [all processors]")->check(CLI::Range(1, 1024));
   tets->add_flag("--quiet", options.quiet, "print warnings and errors only");

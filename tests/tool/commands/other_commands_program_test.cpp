@@ -180,5 +180,20 @@ TEST(Tetrahedralize, WritesElementsWithinTheirBounds) {
   }
 }
 
+TEST(Tetrahedralize, KeepsToAnErrorBudgetInPercentOrInTheMeshsUnit) {
+  const std::string folder = shot_folder("tets_error");
+  for (const char* budget : {"1%", "0.03"}) {
+    const Outcome outcome = run(fmt::format(
+        "softreel tetrahedralize {0}/sphere.obj -o {0}/out.vtu --error {1} --quiet --json", folder, budget));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json report = json::parse(outcome.out);
+    if (budget[1] == '%')
+      EXPECT_LE(report["distance_share_of_diagonal"].get<double>(), 0.01);
+    else
+      EXPECT_LE(report["distance"].get<double>(), 0.03);
+    EXPECT_GT(report["tets"].get<double>(), 100);
+  }
+}
+
 }  // namespace
 }  // namespace softreel
