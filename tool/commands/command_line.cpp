@@ -124,8 +124,12 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   clean->add_flag("--dry-run", parsed.clean.shot.dry_run, "only say what would be removed")->group("Running");
   clean->callback([&] { run = [&parsed] { return run_clean(parsed.clean); }; });
 
-  CLI::App* inspect = app.add_subcommand("inspect", "say what is in a surface mesh: size, holes, flips, pieces");
-  inspect->add_option("mesh", parsed.inspect.mesh, "surface mesh in any format assimp reads")->required();
+  CLI::App* inspect =
+      app.add_subcommand("inspect", "say what is in a mesh: size, holes, flips, pieces; of tetrahedra their angles");
+  inspect
+      ->add_option("mesh", parsed.inspect.mesh,
+                   "surface mesh in any format assimp reads, or tetrahedra: .mesh (Medit), .msh (Gmsh), .vtk, .vtu")
+      ->required();
   inspect->add_flag("--json", parsed.inspect.json, "as JSON");
   inspect->callback([&] { run = [&parsed] { return run_inspect(parsed.inspect); }; });
 
