@@ -19,7 +19,6 @@ RENDER_MAY = {"base", "mesh"}
 # Header pattern, the only files that may include it.
 FENCES = [
     (r"<assimp/", r"core/mesh/readers/assimp_reader\.cpp$"),
-    (r"<openvdb/", r"core/tetmesh/narrow_band_openvdb\.cpp$"),
     (r"<(tbb|oneapi)/", r"core/base/parallel\.(h|cpp)$"),
     (r"<embree3/", r"render/pathtrace/ray_scene_embree\.cpp$"),
     (r"<(EGL|GL|epoxy)/", r"render/preview/preview_egl\.cpp$"),

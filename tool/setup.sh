@@ -31,7 +31,7 @@ softreel_install() {
 softreel_configure() {
   local folder=$1
   shift
-  [ $# -gt 0 ] || set -- -DSOFTREEL_WITH_EMBREE=ON -DSOFTREEL_WITH_EGL=ON -DSOFTREEL_WITH_OPENVDB=ON \
+  [ $# -gt 0 ] || set -- -DSOFTREEL_WITH_EMBREE=ON -DSOFTREEL_WITH_EGL=ON \
     -DSOFTREEL_WITH_ASSIMP=ON -DSOFTREEL_BUILD_TESTS=ON -DSOFTREEL_BUILD_BENCHMARKS=ON -DSOFTREEL_WERROR=ON \
     -DCMAKE_BUILD_TYPE=Release
   local log

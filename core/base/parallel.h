@@ -33,7 +33,7 @@ class Threads {
   /// Sum of body over all chunks of [0, n), added in the order of the chunks.
   double sum_chunks(std::int64_t n, std::int64_t grain, const ChunkSum& body) const;
 
-  /// Runs `work` so that a library's own parallel loops (OpenVDB, Embree) use these threads only.
+  /// Runs `work` so that a library's own parallel loops (Embree) use these threads only.
   void run(const std::function<void()>& work) const;
 
  private:

@@ -1,4 +1,4 @@
-/// Parts of the program that stand on heavy libraries (OpenVDB, Embree, EGL, assimp) and are loaded when first used.
+/// Parts of the program that stand on heavy libraries (Embree, EGL, assimp) and are loaded when first used.
 ///
 /// A part is one fenced source with one entry function of C linkage. With SOFTREEL_LAZY_PARTS it is a module of its
 /// own, so that a command which needs no part does not pay for its libraries; without, it is linked like any other

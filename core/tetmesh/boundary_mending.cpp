@@ -20,37 +20,6 @@ bool has(const Tet& tet, Index node) {
   return std::find(tet.begin(), tet.end(), node) != tet.end();
 }
 
-/// Faces that belong to one element only, nodes sorted. Only faces of surface nodes can, so the inside costs nothing.
-std::vector<BoundaryFace> find_surface(const StuffedMesh& stuffed) {
-  std::vector<BoundaryFace> faces;
-  for (std::size_t e = 0; e < stuffed.mesh.tets.size(); ++e) {
-    const Tet& tet = stuffed.mesh.tets[e];
-    std::array<bool, 4> surface;
-    int count = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      surface[k] = stuffed.on_surface[at(tet[k])] != 0;
-      count += surface[k] ? 1 : 0;
-    }
-    if (count < 3) continue;
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (count == 3 && surface[k]) continue;
-      Triangle face{tet[(k + 1) % 4], tet[(k + 2) % 4], tet[(k + 3) % 4]};
-      std::sort(face.begin(), face.end());
-      faces.push_back({face, static_cast<Index>(e)});
-    }
-  }
-  std::sort(faces.begin(), faces.end(), [](const BoundaryFace& a, const BoundaryFace& b) {
-    return a.nodes != b.nodes ? a.nodes < b.nodes : a.element < b.element;
-  });
-  std::size_t kept = 0;
-  for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
-    for (end = i + 1; end < faces.size() && faces[end].nodes == faces[i].nodes;) ++end;
-    if (end == i + 1) faces[kept++] = faces[i];
-  }
-  faces.resize(kept);
-  return faces;
-}
-
 /// Items of each node, as a compressed list.
 struct NodeItems {
   std::vector<Index> offsets, items;
@@ -112,7 +81,7 @@ int shared_nodes(const Tet& a, const Tet& b) {
 class BoundaryDefects {
  public:
   explicit BoundaryDefects(const StuffedMesh& stuffed)
-      : faces(find_surface(stuffed)),
+      : faces(find_surface_faces(stuffed)),
         faces_of(items_of_nodes(stuffed.mesh.nodes.size(), faces.size(), [this](std::size_t i, const auto& visit) {
           for (const Index node : faces[i].nodes) visit(node);
         })) {
@@ -311,6 +280,36 @@ class MendingRound {
 };
 
 }  // namespace
+
+std::vector<BoundaryFace> find_surface_faces(const StuffedMesh& stuffed) {
+  std::vector<BoundaryFace> faces;
+  for (std::size_t e = 0; e < stuffed.mesh.tets.size(); ++e) {
+    const Tet& tet = stuffed.mesh.tets[e];
+    std::array<bool, 4> surface;
+    int count = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      surface[k] = stuffed.on_surface[at(tet[k])] != 0;
+      count += surface[k] ? 1 : 0;
+    }
+    if (count < 3) continue;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (count == 3 && surface[k]) continue;
+      Triangle face{tet[(k + 1) % 4], tet[(k + 2) % 4], tet[(k + 3) % 4]};
+      std::sort(face.begin(), face.end());
+      faces.push_back({face, static_cast<Index>(e)});
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const BoundaryFace& a, const BoundaryFace& b) {
+    return a.nodes != b.nodes ? a.nodes < b.nodes : a.element < b.element;
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
+    for (end = i + 1; end < faces.size() && faces[end].nodes == faces[i].nodes;) ++end;
+    if (end == i + 1) faces[kept++] = faces[i];
+  }
+  faces.resize(kept);
+  return faces;
+}
 
 BoundaryMending mend_boundary(StuffedMesh& stuffed) {
   BoundaryMending total;

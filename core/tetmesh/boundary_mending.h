@@ -5,6 +5,10 @@
 
 namespace softreel {
 
+/// Faces that belong to one element only, nodes sorted: boundary_faces without the inside, as only faces of surface
+/// nodes can be there.
+std::vector<BoundaryFace> find_surface_faces(const StuffedMesh& stuffed);
+
 /// What was done.
 struct BoundaryMending {
   Index copied_nodes = 0;  ///< a node where parts touched became one node a part

@@ -45,11 +45,14 @@ constexpr bool is_long(Vertex a, Vertex b) {
   return a / 2 == b / 2;
 }
 
-/// The face (p, q, r) with p, q inside and r outside is split along p - cut(q, r) if true, along q - cut(p, r) if not.
-/// Joined by a long edge, the diagonal starts at its even end; joined by a short one, it ends at the cut of the long
-/// edge.
-constexpr bool diagonal_starts_at_first(Vertex p, Vertex q, Vertex r) {
-  return is_long(p, q) ? p % 2 == 0 : is_long(q, r);
+/// The rule of whole lattice tetrahedra. Joined by a long edge, the diagonal starts at its even end; joined by a short
+/// one, it ends at the cut of the long edge.
+constexpr DiagonalRule make_lattice_rule() {
+  DiagonalRule rule;
+  for (Vertex p = 0; p < 4; ++p)
+    for (Vertex q = 0; q < 4; ++q)
+      for (Vertex r = 0; r < 4; ++r) rule.starts_at_first[p][q][r] = is_long(p, q) ? p % 2 == 0 : is_long(q, r);
+  return rule;
 }
 
 /// A prism (bottom[i], top[i]), i = 0..2, whose side (i, j) is split along bottom[i] - top[j] if `before[i][j]`. The
@@ -93,8 +96,9 @@ constexpr void add_one_inside(CutStencil& stencil, Vertex p, const NodeList& out
   add(stencil, p, others[0], others[1], others[2]);
 }
 
-constexpr void add_pyramid(CutStencil& stencil, Vertex p, Vertex q, Vertex outside, Vertex apex) {
-  if (!diagonal_starts_at_first(p, q, outside)) {
+constexpr void add_pyramid(CutStencil& stencil, const DiagonalRule& rule, Vertex p, Vertex q, Vertex outside,
+                           Vertex apex) {
+  if (!rule.starts_at_first[p][q][outside]) {
     const Vertex swap = p;
     p = q;
     q = swap;
@@ -105,34 +109,33 @@ constexpr void add_pyramid(CutStencil& stencil, Vertex p, Vertex q, Vertex outsi
 
 /// Two nodes inside, two outside. The diagonal of the surface's own quadrilateral is nobody else's: it closes the order
 /// where the two faces leave no choice, and starts at the lower outside node where they do.
-constexpr void add_wedge(CutStencil& stencil, Vertex p, Vertex q, Vertex r, Vertex s) {
+constexpr void add_wedge(CutStencil& stencil, const DiagonalRule& rule, Vertex p, Vertex q, Vertex r, Vertex s) {
   Prism prism{{p, cut(p, r), cut(p, s)}, {q, cut(q, r), cut(q, s)}, {}};
-  const bool r_after = diagonal_starts_at_first(p, q, r), s_after = diagonal_starts_at_first(p, q, s);
+  const bool r_after = rule.starts_at_first[p][q][r], s_after = rule.starts_at_first[p][q][s];
   prism.set_before(0, 1, r_after);
   prism.set_before(0, 2, s_after);
   prism.set_before(1, 2, r_after == s_after ? true : s_after);
   add_prism(stencil, prism);
 }
 
-constexpr void add_three_inside(CutStencil& stencil, const NodeList& inside, Vertex outside) {
+constexpr void add_three_inside(CutStencil& stencil, const DiagonalRule& rule, const NodeList& inside, Vertex outside) {
   Prism prism;
   for (std::size_t i = 0; i < 3; ++i) {
     prism.bottom[i] = inside[i];
     prism.top[i] = cut(inside[i], outside);
-    for (std::size_t j = i + 1; j < 3; ++j)
-      prism.set_before(i, j, diagonal_starts_at_first(inside[i], inside[j], outside));
+    for (std::size_t j = i + 1; j < 3; ++j) prism.set_before(i, j, rule.starts_at_first[inside[i]][inside[j]][outside]);
   }
   add_prism(stencil, prism);
 }
 
 constexpr std::size_t kPatterns = 81;
 
-constexpr CutStencil make_stencil(std::size_t pattern) {
+constexpr CutStencil make_stencil(const std::array<NodeSign, 4>& signs, const DiagonalRule& rule) {
   NodeList inside, surface, outside;
-  for (Vertex v = 0; v < 4; ++v, pattern /= 3) {
-    if (pattern % 3 == 0) inside.add(v);
-    if (pattern % 3 == 1) surface.add(v);
-    if (pattern % 3 == 2) outside.add(v);
+  for (Vertex v = 0; v < 4; ++v) {
+    if (signs[v] == NodeSign::Inside) inside.add(v);
+    if (signs[v] == NodeSign::Surface) surface.add(v);
+    if (signs[v] == NodeSign::Outside) outside.add(v);
   }
   CutStencil stencil;
   if (inside.count == 0) return stencil;
@@ -141,17 +144,25 @@ constexpr CutStencil make_stencil(std::size_t pattern) {
   else if (inside.count == 1)
     add_one_inside(stencil, inside[0], outside, surface);
   else if (inside.count == 3)
-    add_three_inside(stencil, inside, outside[0]);
+    add_three_inside(stencil, rule, inside, outside[0]);
   else if (outside.count == 1)
-    add_pyramid(stencil, inside[0], inside[1], outside[0], surface[0]);
+    add_pyramid(stencil, rule, inside[0], inside[1], outside[0], surface[0]);
   else
-    add_wedge(stencil, inside[0], inside[1], outside[0], outside[1]);
+    add_wedge(stencil, rule, inside[0], inside[1], outside[0], outside[1]);
   return stencil;
 }
 
 constexpr std::array<CutStencil, kPatterns> make_stencils() {
   std::array<CutStencil, kPatterns> stencils{};
-  for (std::size_t pattern = 0; pattern < kPatterns; ++pattern) stencils[pattern] = make_stencil(pattern);
+  for (std::size_t pattern = 0; pattern < kPatterns; ++pattern) {
+    std::array<NodeSign, 4> signs{};
+    std::size_t rest = pattern;
+    for (NodeSign& sign : signs) {
+      sign = static_cast<NodeSign>(static_cast<int>(rest % 3) - 1);
+      rest /= 3;
+    }
+    stencils[pattern] = make_stencil(signs, make_lattice_rule());
+  }
   return stencils;
 }
 
@@ -163,6 +174,10 @@ const CutStencil& cut_stencil(const std::array<NodeSign, 4>& signs) {
   std::size_t pattern = 0;
   for (std::size_t v = 4; v-- > 0;) pattern = 3 * pattern + static_cast<std::size_t>(static_cast<int>(signs[v]) + 1);
   return kStencils[pattern];
+}
+
+CutStencil cut_stencil(const std::array<NodeSign, 4>& signs, const DiagonalRule& rule) {
+  return make_stencil(signs, rule);
 }
 
 }  // namespace softreel

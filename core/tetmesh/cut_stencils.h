@@ -29,4 +29,15 @@ constexpr std::array<std::array<std::uint8_t, 2>, 6> kStencilEdges{{{0, 1}, {2, 
 /// alike.
 const CutStencil& cut_stencil(const std::array<NodeSign, 4>& signs);
 
+/// How faces with two inside nodes are split in tetrahedra of other shapes.
+struct DiagonalRule {
+  /// [p][q][r]: the face with p, q inside and r outside is split along p - cut(q, r) if true, along q - cut(p, r) if
+  /// not. Must say the same for both tetrahedra of a face, the opposite for [q][p][r], and for one r put the other
+  /// three nodes in an order.
+  std::array<std::array<std::array<bool, 4>, 4>, 4> starts_at_first{};
+};
+
+/// The stencil of any tetrahedron that follows a rule of its own.
+CutStencil cut_stencil(const std::array<NodeSign, 4>& signs, const DiagonalRule& rule);
+
 }  // namespace softreel

@@ -1,10 +1,9 @@
-/// Unsigned distances from lattice nodes to a surface near them: all that OpenVDB is asked for, and its entry as a
-/// part.
+/// Unsigned distances from lattice nodes to a surface near them.
 #pragma once
 
-#include <span>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "core/base/types.h"
 #include "core/tetmesh/bcc_lattice.h"
 
@@ -18,14 +17,12 @@ constexpr double kBandVoxels = 2.0;
 struct BandNode {
   LatticeNode node;
   double distance = 0;  ///< in units of half the lattice's spacing
-  Index nearest = -1;   ///< a triangle near it
+  Index nearest = -1;   ///< the triangle nearest to it; of several the first
 };
 
-/// Appends the nodes of the lattice at `frame` within kBandVoxels of the triangles, and some beyond, to `band`: in an
-/// order of OpenVDB's that depends on the surface only. Its loops run on the arena of the caller.
-extern "C" [[gnu::visibility("default")]] void softreel_measure_narrow_band(std::span<const Vec3> positions,
-                                                                            std::span<const Triangle> triangles,
-                                                                            const LatticeFrame& frame,
-                                                                            std::vector<BandNode>& band);
+/// All nodes of the lattice at `frame` within kBandVoxels of the triangles, in an order that depends on the surface
+/// only. Triangles with a corner that is not finite have no nodes. Cost: triangles and nodes of the band.
+std::vector<BandNode> measure_narrow_band(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                                          const LatticeFrame& frame, const Threads& threads);
 
 }  // namespace softreel

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <functional>
 
-#include "core/base/error.h"
-#include "core/base/part.h"
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/narrow_band.h"
 #include "core/tetmesh/row_crossings.h"
@@ -21,28 +19,6 @@ constexpr std::int64_t kGrain = 256;
 
 /// A lattice node with its distance, which is signed once it is known; nearest is -1 beyond the band.
 using KnownNode = BandNode;
-
-#if SOFTREEL_WITH_OPENVDB
-
-std::vector<KnownNode> narrow_band(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                                   const LatticeFrame& frame, const Threads& threads) {
-  static const auto measure = part_function<&softreel_measure_narrow_band>("openvdb", "softreel_measure_narrow_band");
-  std::vector<KnownNode> band;
-  threads.run([&] { measure(positions, triangles, frame, band); });
-  return band;
-}
-
-#else
-
-std::vector<KnownNode> narrow_band(const std::vector<Vec3>& /*positions*/, const std::vector<Triangle>& /*triangles*/,
-                                   const LatticeFrame& /*frame*/, const Threads& /*threads*/) {
-  throw input_error(
-      "tetrahedra from a surface: this build has no OpenVDB, which measures the distance to the surface (it was "
-      "configured with SOFTREEL_WITH_OPENVDB=OFF or did not find it). Accepted: a build with OpenVDB. Configure with "
-      "-DSOFTREEL_WITH_OPENVDB=ON, or give the body ready-made tetrahedra (.mesh, .msh, .vtu).");
-}
-
-#endif
 
 /// Whether every edge is used as often in one direction as in the other. Then winding numbers are integers, and the
 /// sign changes nowhere but at the surface.
@@ -107,7 +83,7 @@ void add_neighbors(std::vector<KnownNode>& nodes, LatticeNodeSet& known,
 
 SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                  const LatticeFrame& frame, const Threads& threads) {
-  std::vector<KnownNode> nodes = narrow_band(positions, triangles, frame, threads);
+  std::vector<KnownNode> nodes = measure_narrow_band(positions, triangles, frame, threads);
   SurfaceDistance result;
   LatticeNodeSet& known = result.lattice.nodes;
   for (const KnownNode& node : nodes) known.insert(node.node);
@@ -128,6 +104,42 @@ SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::
     result.lattice.values[i] = node.distance * 0.5 * frame.spacing;
     result.nearest_triangles[i] = node.nearest;
   }
+  return result;
+}
+
+DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                                 const LatticeFrame& frame)
+    : frame_(frame), tree_(positions, triangles) {
+  if (is_closed(positions, triangles))
+    crossings_.emplace(positions, triangles, frame);
+  else
+    winding_.emplace(positions, triangles);
+}
+
+SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, double reach, const Threads& threads) const {
+  const std::vector<LatticeNode>& list = nodes.nodes();
+  SurfaceDistance result;
+  result.lattice.frame = frame_;
+  result.lattice.nodes = nodes;
+  result.lattice.values.resize(list.size());
+  result.nearest_triangles.resize(list.size());
+  threads.for_chunks(static_cast<std::int64_t>(list.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const Vec3 p = lattice_position(frame_, list[i]);
+      const TriangleTree::Nearest found = tree_.nearest(p, reach * reach, [](Index, const Vec3&) { return true; });
+      double distance = std::sqrt(found.squared_distance);
+      bool inside = false;
+      if (crossings_) {
+        inside = crossings_->winding(list[i]) != 0;
+      } else {
+        const double beyond = std::abs((*winding_)(p)) - 0.5;
+        distance = std::min(distance, 0.5 * frame_.spacing * kHoleSlope * std::abs(beyond));
+        inside = beyond > 0;
+      }
+      result.lattice.values[i] = inside ? -distance : distance;
+      result.nearest_triangles[i] = found.triangle;
+    }
+  });
   return result;
 }
 

@@ -1,14 +1,18 @@
 /// Signed distance from the nodes of a BCC lattice to a triangle surface.
 ///
-/// Distances are OpenVDB's, in a narrow band; lattice nodes lie on its voxels, so nothing is interpolated. Signs are
-/// generalised winding numbers, so that open and dirty surfaces have an inside too.
+/// Distances are exact in a narrow band and not asked for beyond it. Signs are winding numbers, generalised where the
+/// surface is open, so that dirty surfaces have an inside too.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/base/parallel.h"
 #include "core/base/types.h"
 #include "core/tetmesh/lattice_nodes.h"
+#include "core/tetmesh/row_crossings.h"
+#include "core/tetmesh/triangle_tree.h"
+#include "core/tetmesh/winding_number.h"
 
 namespace softreel {
 
@@ -21,9 +25,27 @@ struct SurfaceDistance {
 /// Distances (m, negative inside, at most one spacing where the sign is beyond doubt) from the nodes of the lattice at
 /// `frame` to the surface. Inside is where the winding number is nearer to 1 or -1 than to 0. In the holes of an open
 /// surface the distance follows the winding number.
-/// Throws input_error if OpenVDB is not built in, work_error if it cannot be loaded. Cost: the band and the inside,
-/// never the bounding box.
+/// Cost: the band and the inside, never the bounding box.
 SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                  const LatticeFrame& frame, const Threads& threads);
+
+/// The same for nodes of any choice: those of an octree, whose sizes differ.
+class DistanceSampler {
+ public:
+  /// frame: the finest lattice, which all nodes belong to.
+  DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                  const LatticeFrame& frame);
+
+  /// Distances of all `nodes` (numbered), m; at most `reach` where the sign is beyond doubt.
+  SurfaceDistance sample(const LatticeNodeSet& nodes, double reach, const Threads& threads) const;
+
+  const TriangleTree& tree() const { return tree_; }
+
+ private:
+  LatticeFrame frame_;
+  TriangleTree tree_;
+  std::optional<RowCrossings> crossings_;  ///< of a closed surface
+  std::optional<WindingNumber> winding_;   ///< of an open one
+};
 
 }  // namespace softreel

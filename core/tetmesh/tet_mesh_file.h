@@ -1,10 +1,12 @@
-/// Tetrahedra as files of other tools: VTK .vtu, Gmsh .msh, Medit .mesh.
+/// Tetrahedra as files of other tools: VTK .vtu and .vtk, Gmsh .msh, Medit .mesh.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/base/log.h"
 #include "core/tetmesh/tet_mesh.h"
 
 namespace softreel {
@@ -15,5 +17,17 @@ namespace softreel {
 /// ".mesh" (Medit text, with the boundary triangles). Throws input_error for any other. Nodes and elements keep their
 /// order.
 std::vector<std::uint8_t> encode_tet_mesh(const TetMesh& mesh, const std::string& extension);
+
+/// True for the extensions that decode_tet_mesh reads: those of encode_tet_mesh and ".vtk".
+bool is_tet_mesh_extension(const std::string& extension);
+
+/// Tetrahedra from the bytes of a file: Medit text, Gmsh 2 or 4.1 (text, binary), VTK .vtu (text, base64, appended;
+/// uncompressed) or legacy .vtk (text, binary).
+///
+/// name: of the file, for messages. Points, lines and faces are skipped. Inverted elements are turned round and nodes
+/// that no element uses are left out, each said in one line of `log`. The lattice for the hierarchy gets the mean edge.
+/// Throws input_error, one clear message, for what is broken: an index out of range, a position that is not finite, an
+/// element without volume, elements of other shapes or orders, a file that ends early or has no tetrahedra.
+TetMesh decode_tet_mesh(const std::string& name, std::string_view bytes, const std::string& extension, const Log& log);
 
 }  // namespace softreel

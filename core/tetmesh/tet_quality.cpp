@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/tetmesh/farthest_point.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
@@ -19,25 +20,6 @@ std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::size_t e) {
 
 double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
-}
-
-/// Largest distance of the samples of triangles to a tree.
-double farthest_sample(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                       const TriangleTree& tree, const Threads& threads) {
-  const auto n = static_cast<std::int64_t>(triangles.size());
-  constexpr std::int64_t kSampleGrain = 256;
-  std::vector<double> farthest(static_cast<std::size_t>((n + kSampleGrain - 1) / kSampleGrain), 0.0);
-  threads.for_chunks(n, kSampleGrain, [&](std::int64_t begin, std::int64_t end) {
-    double& most = farthest[static_cast<std::size_t>(begin / kSampleGrain)];
-    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-      std::array<Vec3, 3> x;
-      for (std::size_t k = 0; k < 3; ++k) x[k] = points[static_cast<std::size_t>(triangles[t][k])];
-      const std::array<Vec3, 7> samples{
-          x[0], x[1], x[2], 0.5 * (x[0] + x[1]), 0.5 * (x[1] + x[2]), 0.5 * (x[2] + x[0]), (x[0] + x[1] + x[2]) / 3.0};
-      for (const Vec3& sample : samples) most = std::max(most, tree.nearest(sample).squared_distance);
-    }
-  });
-  return farthest.empty() ? 0.0 : std::sqrt(*std::max_element(farthest.begin(), farthest.end()));
 }
 
 }  // namespace
@@ -94,8 +76,8 @@ TetQuality measure_quality(const TetMesh& mesh, const Threads& threads) {
 SurfaceDeviation measure_deviation(const SurfaceMesh& surface, const TetMesh& mesh, const Threads& threads) {
   const std::vector<Triangle> boundary = boundary_faces(mesh);
   const TriangleTree surface_tree(surface.positions, surface.triangles), boundary_tree(mesh.nodes, boundary);
-  return {farthest_sample(surface.positions, surface.triangles, boundary_tree, threads),
-          farthest_sample(mesh.nodes, boundary, surface_tree, threads)};
+  return {farthest_distance(surface.positions, surface.triangles, boundary_tree, threads),
+          farthest_distance(mesh.nodes, boundary, surface_tree, threads)};
 }
 
 }  // namespace softreel

@@ -24,11 +24,11 @@ DihedralRange dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const 
 /// Measures all elements; node indices must be valid. Of a mesh without elements: all 0 and -1.
 TetQuality measure_quality(const TetMesh& mesh, const Threads& threads);
 
-/// Largest distances between a surface and the boundary of a mesh, sampled at vertices, edge midpoints and centroids of
-/// the triangles of either; m. Vertices that no triangle uses do not count.
+/// Largest distances between a surface and the boundary of a mesh, m: at all points of the triangles of either, as
+/// far as farthest_distance finds them. Vertices that no triangle uses do not count.
 struct SurfaceDeviation {
-  double from_surface = 0;   ///< largest distance of a surface sample to the boundary of the mesh
-  double from_boundary = 0;  ///< largest distance of a boundary sample to the surface
+  double from_surface = 0;   ///< largest distance of a point of the surface to the boundary of the mesh
+  double from_boundary = 0;  ///< largest distance of a point of the boundary to the surface
   double two_way() const { return from_surface > from_boundary ? from_surface : from_boundary; }
 };
 SurfaceDeviation measure_deviation(const SurfaceMesh& surface, const TetMesh& mesh, const Threads& threads);

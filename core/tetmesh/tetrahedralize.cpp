@@ -7,7 +7,10 @@
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
+#include "core/tetmesh/error_budget.h"
+#include "core/tetmesh/graded_stuffing.h"
 #include "core/tetmesh/mesh_pieces.h"
 #include "core/tetmesh/sheet_shells.h"
 #include "core/tetmesh/tet_quality.h"
@@ -77,8 +80,13 @@ StuffedMesh fill_surface(const Job& job, double edge, const Vec3& shift = Vec3::
   return stuffed;
 }
 
+/// Dihedral angles that a mesh promises, degrees.
+struct AngleBounds {
+  double min = kMinDihedral, max = kMaxDihedral;
+};
+
 /// The promises of the header, tested on every mesh.
-void require_quality(const Job& job, const TetMesh& mesh) {
+void require_quality(const Job& job, const TetMesh& mesh, const AngleBounds& bounds) {
   const ScopedStage stage(job.times, "tetrahedralize/check");
   const auto nodes = static_cast<Index>(mesh.nodes.size());
   for (const Tet& tet : mesh.tets)
@@ -87,14 +95,14 @@ void require_quality(const Job& job, const TetMesh& mesh) {
       CHECK(node < nodes);
     }
   const TetQuality quality = measure_quality(mesh, job.threads);
-  if (quality.min_volume > 0 && quality.min_dihedral >= kMinDihedral && quality.max_dihedral <= kMaxDihedral) return;
+  if (quality.min_volume > 0 && quality.min_dihedral >= bounds.min && quality.max_dihedral <= bounds.max) return;
   throw work_error(fmt::format(
       "body '{}': a tetrahedron is worse than promised: volume {:.3g} m^3 (element {}), dihedral angles {:.4g} to "
       "{:.4g} "
       "degrees (elements {}, {}). Accepted: positive volume, {} to {} degrees. The body may be too far from the origin "
       "for its size; move it nearer, or use another edge length.",
       job.name, quality.min_volume, quality.min_volume_tet, quality.min_dihedral, quality.max_dihedral,
-      quality.min_dihedral_tet, quality.max_dihedral_tet, kMinDihedral, kMaxDihedral));
+      quality.min_dihedral_tet, quality.max_dihedral_tet, bounds.min, bounds.max));
 }
 
 /// The edge that gives `tets` by the prediction; it falls monotonously with the edge, so halving finds it.
@@ -161,12 +169,38 @@ StuffedMesh fill_with_count(const Job& job, double wanted) {
   return best;
 }
 
+/// Fills with graded sizes; says where the budget could not be kept.
+StuffedMesh fill_with_error(const Job& job, double error) {
+  ErrorBudgetParams params;
+  params.error = error;
+  require_size(job, params.base_edge * error);
+  GradedFilling filling = [&] {
+    const ScopedStage stage(job.times, "tetrahedralize/lattice");
+    return fill_to_error(job.surface, params, job.threads);
+  }();
+  StuffedMesh& stuffed = filling.stuffed;
+  if (stuffed.mesh.tets.empty()) return std::move(stuffed);
+  const LatticeFrame frame = stuffed.mesh.lattice;
+  stuffed.mesh.lattice.spacing = filling.finest_edge;  // what is small, and what is too thin, is judged by that
+  drop_crumbs(stuffed, filling.distance, job.parts, job.name, job.log);
+  require_all_parts(stuffed, filling.distance, job.parts, job.name, job.log);
+  stuffed.mesh.lattice = frame;
+  order_nodes(stuffed);
+  const ScopedStage stage(job.times, "tetrahedralize/check");
+  if (const double reached = measure_deviation(job.surface, stuffed.mesh, job.threads).two_way(); reached > error)
+    job.log.warn(
+        fmt::format("body '{}': the tetrahedra keep to {:.4g} m of the surface, not to error = {:.4g} m: even edges of "
+                    "{:.4g} m do not reach all of it. Accepted: this mesh, as it is. Close or thicken what is thin.",
+                    job.name, reached, error, filling.finest_edge));
+  return std::move(stuffed);
+}
+
 void require_params(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name) {
-  if ((params.edge > 0) == (params.tets > 0))
+  if ((params.edge > 0) + (params.tets > 0) + (params.error > 0) != 1)
     throw input_error(
-        fmt::format("body '{}': edge = {} m, tets = {}: exactly one of the two sizes must be set. Accepted: "
-                    "one above 0. Give tets (for example 20000) and leave edge out.",
-                    name, params.edge, params.tets));
+        fmt::format("body '{}': edge = {} m, tets = {}, error = {} m: exactly one of the sizes must be set. Accepted: "
+                    "one above 0. Give tets (for example 20000) and leave the others out.",
+                    name, params.edge, params.tets, params.error));
   if (surface.triangles.empty())
     throw input_error(
         fmt::format("body '{}': its surface has no triangles, so there is nothing to fill. Accepted: a "
@@ -217,14 +251,20 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
   const Bounds box = used_bounds(prepared);
   const Job job{prepared, parts, box, name, threads, log, times};
   require_volume(job);
-  StuffedMesh stuffed =
-      params.edge > 0 ? fill_surface(job, params.edge) : fill_with_count(job, static_cast<double>(params.tets));
+  StuffedMesh stuffed = params.error > 0  ? fill_with_error(job, params.error)
+                        : params.edge > 0 ? fill_surface(job, params.edge)
+                                          : fill_with_count(job, static_cast<double>(params.tets));
   if (stuffed.mesh.tets.empty())
     throw input_error(
         fmt::format("body '{}': its surface encloses no volume that a lattice with edge {:.4g} m can fill. "
                     "Accepted: a surface that encloses a volume. Close or thicken it, or use a smaller edge.",
                     name, stuffed.mesh.lattice.spacing));
-  require_quality(job, stuffed.mesh);
+  if (params.error == 0) {
+    const ScopedStage stage(times, "tetrahedralize/fit");
+    fit_boundary(stuffed, surface, {}, threads);
+  }
+  require_quality(job, stuffed.mesh,
+                  params.error > 0 ? AngleBounds{kMinGradedDihedral, kMaxGradedDihedral} : AngleBounds{});
   return std::move(stuffed.mesh);
 }
 

@@ -12,18 +12,20 @@
 
 namespace softreel {
 
-/// How fine the tetrahedra are; exactly one of the sizes is set, the other is 0.
+/// How fine the tetrahedra are; exactly one of the sizes is set, the others are 0.
 struct TetrahedralizeParams {
   double edge = 0;        ///< long edge of the lattice, m
   std::int64_t tets = 0;  ///< wanted number of tetrahedra, met within 5 %
+  double error = 0;       ///< wanted two-way distance to the surface, m: sizes are graded, see error_budget.h
   double thickness = 0;   ///< of the open parts of the surface, m; 0: they count as closed where they nearly are
 };
 
 /// Fills a closed surface with tetrahedra by isosurface stuffing of a BCC lattice (Labelle and Shewchuk 2007).
 ///
-/// Dihedral angles lie within 10.2 and 164.8 degrees; the boundary is a manifold; every piece is connected through
-/// faces. `name` (the body's) stands in messages. Throws input_error if no volume can be made, or if a part is too thin
-/// for the lattice; repairs are said in `log`, one line each. Stage times: "tetrahedralize/...".
+/// Dihedral angles lie within 10.2 and 164.8 degrees (graded sizes: 1.66 and 174.72); the boundary is a manifold; every
+/// piece is connected through faces. `name` (the body's) stands in messages. Throws input_error if no volume can be
+/// made, or if a part is too thin for the lattice; repairs are said in `log`, one line each. Stage times:
+/// "tetrahedralize/...".
 TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name,
                        const Threads& threads, const Log& log, StageTimes& times);
 

@@ -24,6 +24,7 @@ class TriangleTree {
     Index triangle = -1;  ///< -1: none accepted
     double squared_distance = 1e300;
     Vec3 point = Vec3::Zero();
+    Index place = -1;  ///< of the triangle in order() and corners()
   };
 
   /// Copies what it needs. An empty list is allowed.
@@ -90,7 +91,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& p, double squared_limit,
       const Index triangle = order_[static_cast<std::size_t>(i)];
       if (d > best.squared_distance || (d == best.squared_distance && best.triangle >= 0 && triangle > best.triangle))
         continue;
-      if (accept(triangle, point)) best = {triangle, d, point};
+      if (accept(triangle, point)) best = {triangle, d, point, i};
     }
   }
   return best;

@@ -58,14 +58,6 @@ if(NOT SOFTREEL_WITH_ASSIMP STREQUAL "OFF")
 endif()
 softreel_part(ASSIMP "${assimp_FOUND}" "assimp ${assimp_VERSION}" assimp::assimp)
 
-if(NOT SOFTREEL_WITH_OPENVDB STREQUAL "OFF")
-  # Debian ships a Find module only, in a folder of the library.
-  list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
-  set(CMAKE_FIND_PACKAGE_WARN_DEPRECATED OFF)
-  find_package(OpenVDB QUIET)
-endif()
-softreel_part(OPENVDB "${OpenVDB_FOUND}" "OpenVDB ${OpenVDB_VERSION}" OpenVDB::openvdb)
-
 if(NOT SOFTREEL_WITH_EMBREE STREQUAL "OFF")
   find_package(embree 3 QUIET)
 endif()

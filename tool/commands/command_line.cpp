@@ -124,8 +124,12 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   clean->add_flag("--dry-run", parsed.clean.shot.dry_run, "only say what would be removed")->group("Running");
   clean->callback([&] { run = [&parsed] { return run_clean(parsed.clean); }; });
 
-  CLI::App* inspect = app.add_subcommand("inspect", "say what is in a surface mesh: size, holes, flips, pieces");
-  inspect->add_option("mesh", parsed.inspect.mesh, "surface mesh in any format assimp reads")->required();
+  CLI::App* inspect =
+      app.add_subcommand("inspect", "say what is in a mesh: size, holes, flips, pieces; of tetrahedra their angles");
+  inspect
+      ->add_option("mesh", parsed.inspect.mesh,
+                   "surface mesh in any format assimp reads, or tetrahedra: .mesh (Medit), .msh (Gmsh), .vtk, .vtu")
+      ->required();
   inspect->add_flag("--json", parsed.inspect.json, "as JSON");
   inspect->callback([&] { run = [&parsed] { return run_inspect(parsed.inspect); }; });
 
@@ -135,9 +139,13 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   tets->add_option("-o,--output", options.output, "file to write: .vtu, .msh (Gmsh 2.2) or .mesh (Medit)")->required();
   CLI::Option* edge = tets->add_option("--edge", options.edge, "long edge of the lattice, in the mesh's unit")
                           ->check(CLI::PositiveNumber);
-  tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
-      ->check(CLI::Range(10L, 100000000L))
-      ->excludes(edge);
+  CLI::Option* count = tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
+                           ->check(CLI::Range(10L, 100000000L))
+                           ->excludes(edge);
+  tets->add_option("--error", options.error,
+                   "distance to the surface to keep to: in the mesh's unit, or as 0.3% of its box's diagonal; graded")
+      ->excludes(edge)
+      ->excludes(count);
   tets->add_option("--thickness", options.thickness, "make open sheets this thick, in the mesh's unit after fit")
       ->check(CLI::PositiveNumber);
   tets->add_option("--fit", options.fit, "scale the mesh to this height first, m")->check(CLI::PositiveNumber);

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -7,7 +9,10 @@
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/readers/mesh_import.h"
+#include "core/tetmesh/tet_mesh_file.h"
+#include "core/tetmesh/tet_quality.h"
 #include "tool/commands/commands.h"
+#include "tool/stages/atomic_file.h"
 
 namespace softreel {
 namespace {
@@ -40,10 +45,65 @@ std::string facts_json(const InspectOptions& options, const MeshFacts& facts, co
   return json.dump(1);
 }
 
+/// What is in a file of tetrahedra.
+struct TetFacts {
+  TetMesh mesh;
+  TetQuality quality;
+  Bounds box;
+  std::size_t boundary_faces = 0;
+  Index pieces = 0;
+};
+
+TetFacts read_tets(const std::string& path, const std::string& extension, const Log& log) {
+  const std::vector<std::uint8_t> bytes = read_file(path);
+  TetFacts facts;
+  facts.mesh = decode_tet_mesh(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, extension, log);
+  facts.quality = measure_quality(facts.mesh, Threads());
+  for (const Vec3& p : facts.mesh.nodes) facts.box.add(p);
+  facts.boundary_faces = find_boundary(facts.mesh).size();
+  for (const Index piece : face_connected_pieces(facts.mesh)) facts.pieces = std::max(facts.pieces, piece + 1);
+  return facts;
+}
+
+void print_tets_json(const InspectOptions& options, const TetFacts& facts) {
+  const auto list = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
+  const nlohmann::ordered_json json = {{"mesh", options.mesh},
+                                       {"tets", facts.mesh.tets.size()},
+                                       {"nodes", facts.mesh.nodes.size()},
+                                       {"boundary_faces", facts.boundary_faces},
+                                       {"pieces", facts.pieces},
+                                       {"volume", facts.quality.volume},
+                                       {"min_volume", facts.quality.min_volume},
+                                       {"min_dihedral_deg", facts.quality.min_dihedral},
+                                       {"first_percentile_dihedral_deg", facts.quality.first_percentile_dihedral},
+                                       {"max_dihedral_deg", facts.quality.max_dihedral},
+                                       {"min", list(facts.box.min)},
+                                       {"max", list(facts.box.max)}};
+  std::printf("%s\n", json.dump(1).c_str());
+}
+
+int inspect_tets(const InspectOptions& options, const std::string& extension, const Log& log) {
+  const TetFacts facts = read_tets(options.mesh, extension, log);
+  if (options.json) {
+    print_tets_json(options, facts);
+    return 0;
+  }
+  const Vec3 size = facts.box.size();
+  std::printf("%s: %zu tetrahedra, %zu nodes, %zu boundary faces; box %.6g x %.6g x %.6g\n", options.mesh.c_str(),
+              facts.mesh.tets.size(), facts.mesh.nodes.size(), facts.boundary_faces, size.x(), size.y(), size.z());
+  std::printf("  pieces connected through faces: %d\n", facts.pieces);
+  std::printf("  volume %.6g, smallest element %.3g\n", facts.quality.volume, facts.quality.min_volume);
+  std::printf("  dihedral angles: min %.2f, first percentile %.2f, max %.2f degrees\n", facts.quality.min_dihedral,
+              facts.quality.first_percentile_dihedral, facts.quality.max_dihedral);
+  return 0;
+}
+
 }  // namespace
 
 int run_inspect(const InspectOptions& options) {
   Console console(Verbosity::Normal, isatty(STDERR_FILENO) != 0);
+  const std::string extension = std::filesystem::path(options.mesh).extension().string();
+  if (is_tet_mesh_extension(extension)) return inspect_tets(options, extension, console.log());
   SurfaceMesh mesh = import_mesh(options.mesh, console.log());
   const MeshFacts facts = check_mesh(mesh);
   const std::vector<std::string> repairs = repair_mesh(mesh);

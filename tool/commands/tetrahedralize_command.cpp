@@ -1,3 +1,5 @@
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -34,6 +36,21 @@ void check_extension(const std::string& path) {
       fmt::format("-o {}: the format \"{}\" is not known.\n  Accepted: .vtu (VTK), .msh (Gmsh 2.2), "
                   ".mesh (Medit).",
                   path, extension));
+}
+
+/// --error in metres: a number, or a share of the diagonal with a % sign.
+double parse_error_budget(const std::string& text, double diagonal) {
+  if (text.empty()) return 0;
+  const bool is_share = text.back() == '%';
+  const char* const end = text.data() + text.size() - (is_share ? 1 : 0);
+  double value = 0;
+  const auto [stopped, code] = std::from_chars(text.data(), end, value);
+  if (code != std::errc{} || stopped != end || !(value > 0) || !std::isfinite(value) || (is_share && value > 50))
+    throw input_error(fmt::format(
+        "--error {}: this is no distance.\n  Accepted: a length above 0 in the mesh's unit, or a share of the diagonal "
+        "of its box above 0 and up to 50 % (0.3%). Use 0.3% if you do not know.",
+        text));
+  return is_share ? value / 100 * diagonal : value;
 }
 
 std::string to_json(const TetrahedralizeOptions& options, const Result& result) {
@@ -76,8 +93,10 @@ int run_tetrahedralize(const TetrahedralizeOptions& options) {
   result.surface = import_mesh(options.mesh, log);
   for (const std::string& line : repair_mesh(result.surface)) log.info(line);
   if (options.fit > 0) apply(place(result.surface, {.fit = options.fit}), result.surface);
-  TetrahedralizeParams params{options.edge, options.tets, options.thickness};
-  if (params.edge == 0 && params.tets == 0) params.tets = 20000;
+  TetrahedralizeParams params{options.edge, options.tets,
+                              parse_error_budget(options.error, used_bounds(result.surface).diagonal()),
+                              options.thickness};
+  if (params.edge == 0 && params.tets == 0 && params.error == 0) params.tets = 20000;
   const auto start = std::chrono::steady_clock::now();
   result.mesh = tetrahedralize(result.surface, params, options.mesh, threads, log, times);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -18,7 +18,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same surface would give other tetrahedra or another embedding.
-constexpr const char* kFillVersion = "tetrahedra 2";
+constexpr const char* kFillVersion = "tetrahedra 3";
 
 PlacementParams placement_params(const BodySettings& body) {
   PlacementParams params;
@@ -127,7 +127,7 @@ FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const S
   FilledBody filled;
   filled.normals = vertex_normals(loaded.surface, loaded.surface.positions);
   const auto fill = [&] {
-    filled.mesh = tetrahedralize(loaded.surface, {body.edge, body.tets, body.thickness}, body.name, context.threads,
+    filled.mesh = tetrahedralize(loaded.surface, {body.edge, body.tets, 0, body.thickness}, body.name, context.threads,
                                  context.log, context.times);
     const ScopedStage stage(context.times, "tetrahedralize/embed");
     filled.embedding = embed_points(loaded.surface.positions, filled.normals, filled.mesh, context.threads);

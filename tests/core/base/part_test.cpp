@@ -28,17 +28,17 @@ TEST(PartSymbol, NamesAMissingFileAndWhatHelps) {
   EXPECT_NE(message.find("../lib/softreel"), std::string::npos) << message;
 }
 
-#if SOFTREEL_LAZY_PARTS && SOFTREEL_WITH_OPENVDB
+#if SOFTREEL_LAZY_PARTS && SOFTREEL_WITH_ASSIMP
 
 TEST(PartSymbol, NamesAMissingFunction) {
-  const std::string message = failure("openvdb", "fly");
+  const std::string message = failure("assimp", "fly");
   EXPECT_NE(message.find("undefined symbol: fly"), std::string::npos) << message;
 }
 
 TEST(PartSymbol, LoadsOnce) {
-  void* first = detail::part_symbol("openvdb", "softreel_measure_narrow_band");
+  void* first = detail::part_symbol("assimp", "softreel_read_with_assimp");
   EXPECT_NE(first, nullptr);
-  EXPECT_EQ(detail::part_symbol("openvdb", "softreel_measure_narrow_band"), first);
+  EXPECT_EQ(detail::part_symbol("assimp", "softreel_read_with_assimp"), first);
 }
 
 #endif

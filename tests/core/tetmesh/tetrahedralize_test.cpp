@@ -34,14 +34,6 @@ struct Filling {
 
 class Tetrahedralize : public testing::Test {
  protected:
-  void SetUp() override {
-    try {
-      fill(test::make_sphere(1, 4, Vec3::Zero()), {0.5, 0});
-    } catch (const Error& error) {
-      if (std::string(error.what()).find("SOFTREEL_WITH_OPENVDB") == std::string::npos) throw;
-      GTEST_SKIP() << error.what();
-    }
-  }
   Filling fill;
 };
 

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
 #include "core/skinning/embedding.h"
 #include "core/tetmesh/tetrahedralize.h"
 #include "tests/support/surfaces.h"
@@ -32,20 +31,7 @@ TetMesh fill(const SurfaceMesh& surface, double edge, std::vector<std::string>& 
   return tetrahedralize(surface, {edge, 0}, "dumbbell", Threads(1), {collect, collect}, times);
 }
 
-/// False where OpenVDB is not built in.
-bool can_fill() {
-  std::vector<std::string> lines;
-  try {
-    fill(test::make_sphere(1, 4, Vec3::Zero()), 0.5, lines);
-    return true;
-  } catch (const Error& error) {
-    if (std::string(error.what()).find("SOFTREEL_WITH_OPENVDB") == std::string::npos) throw;
-    return false;
-  }
-}
-
 TEST(BridgeThinParts, ARodOfAnyThinnessHoldsTheBallsTogether) {
-  if (!can_fill()) GTEST_SKIP() << "OpenVDB is not built in";
   constexpr double kEdge = 0.2;
   for (const double neck : {0.1, 0.05, 0.02, 0.004}) {
     std::vector<std::string> lines;
@@ -63,7 +49,6 @@ TEST(BridgeThinParts, ARodOfAnyThinnessHoldsTheBallsTogether) {
 }
 
 TEST(BridgeThinParts, WhatTheLatticeCarriesIsLeftAlone) {
-  if (!can_fill()) GTEST_SKIP() << "OpenVDB is not built in";
   std::vector<std::string> lines;
   fill(make_dumbbell(0.3), 0.12, lines);
   fill(test::make_sphere(1, 16, Vec3(0.03, 0.01, 0.02)), 0.11, lines);
@@ -72,7 +57,6 @@ TEST(BridgeThinParts, WhatTheLatticeCarriesIsLeftAlone) {
 }
 
 TEST(BridgeThinParts, PartsStayApartAcrossAGap) {
-  if (!can_fill()) GTEST_SKIP() << "OpenVDB is not built in";
   // The thin rod passes over a third ball without touching it.
   SurfaceMesh surface = make_dumbbell(0.02);
   const SurfaceMesh ball = test::make_sphere(0.3, 16, Vec3(0, -0.75, 0));

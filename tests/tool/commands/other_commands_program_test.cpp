@@ -177,6 +177,36 @@ TEST(Tetrahedralize, WritesElementsWithinTheirBounds) {
     EXPECT_GE(report["min_dihedral_deg"].get<double>(), 10.2);
     EXPECT_LE(report["max_dihedral_deg"].get<double>(), 164.8);
     EXPECT_TRUE(exists(fmt::format("{}/out.{}", folder, extension)));
+    const Outcome inspected = run(fmt::format("softreel inspect {}/out.{} --json", folder, extension));
+    ASSERT_EQ(inspected.status, 0) << inspected.err;
+    const json facts = json::parse(inspected.out);
+    for (const char* fact : {"tets", "nodes", "volume", "min_dihedral_deg", "max_dihedral_deg"})
+      EXPECT_EQ(facts[fact], report[fact]) << fact;
+    EXPECT_EQ(facts["pieces"], 1);
+  }
+}
+
+TEST(Inspect, RefusesBrokenTetrahedra) {
+  const std::string folder = new_folder("tets_broken");
+  write_text(folder + "/broken.mesh", "MeshVersionFormatted 2\nVertices\n3\n0 0 0 0\n");
+  const Outcome outcome = run(fmt::format("softreel inspect {}/broken.mesh", folder));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("broken.mesh (byte "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("Accepted"), std::string::npos) << outcome.err;
+}
+
+TEST(Tetrahedralize, KeepsToAnErrorBudgetInPercentOrInTheMeshsUnit) {
+  const std::string folder = shot_folder("tets_error");
+  for (const char* budget : {"1%", "0.03"}) {
+    const Outcome outcome = run(fmt::format(
+        "softreel tetrahedralize {0}/sphere.obj -o {0}/out.vtu --error {1} --quiet --json", folder, budget));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json report = json::parse(outcome.out);
+    if (budget[1] == '%')
+      EXPECT_LE(report["distance_share_of_diagonal"].get<double>(), 0.01);
+    else
+      EXPECT_LE(report["distance"].get<double>(), 0.03);
+    EXPECT_GT(report["tets"].get<double>(), 100);
   }
 }
 

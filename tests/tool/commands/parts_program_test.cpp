@@ -14,7 +14,7 @@ namespace {
 using namespace softreel::testing;
 
 /// The libraries behind the parts, as the names of their files begin.
-constexpr const char* kHeavy[] = {"libassimp", "libopenvdb", "libembree", "libEGL", "libepoxy", "softreel_part_"};
+constexpr const char* kHeavy[] = {"libassimp", "libembree", "libEGL", "libepoxy", "softreel_part_"};
 
 /// Adds the names of the files that one process mapped: what stands after the last / of "calling init: PATH" lines.
 void add_mapped(const std::string& loader_log, std::set<std::string>& names) {
@@ -75,11 +75,11 @@ TEST(Parts, NoneIsLoadedToInspectAnObj) {
   EXPECT_EQ(mapped.heavy(), Names());
 }
 
-TEST(Parts, RenderLoadsOpenVdbForTheBodyAndEmbreeForThePicture) {
+TEST(Parts, RenderLoadsEmbreeForThePicture) {
   const std::string folder = shot_folder("parts_render");
   const Mapped mapped = run_traced(fmt::format("render {0}/shot.toml --output {0}/out --frames 1 --quiet", folder));
   EXPECT_EQ(mapped.outcome.status, 0) << mapped.outcome.err;
-  EXPECT_EQ(mapped.heavy(), Names({"libopenvdb", "libembree", "softreel_part_"}));
+  EXPECT_EQ(mapped.heavy(), Names({"libembree", "softreel_part_"}));
 }
 
 TEST(Parts, PreviewLoadsEglInsteadOfEmbree) {

@@ -1,0 +1,111 @@
+#include "core/tetmesh/farthest_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softreel {
+namespace {
+
+constexpr std::int64_t kGrain = 256;
+
+/// Triangles that are smaller than this share of the mean edge (of either side, the smaller) are not quartered.
+constexpr double kSmallest = 0.25;
+
+/// A point and the triangle of the tree that is nearest to it.
+struct Probe {
+  Vec3 point;
+  Index leaf_place = 0;  ///< of that triangle
+  double distance = 0;
+};
+
+class Search {
+ public:
+  /// lower: a distance known to be reached. smallest: triangles with shorter edges are not quartered, m.
+  Search(const TriangleTree& tree, double lower, double smallest) : tree_(tree), best_(lower), smallest_(smallest) {}
+
+  static Probe probe(const TriangleTree& tree, const Vec3& point) {
+    const TriangleTree::Nearest found = tree.nearest(point);
+    return {point, found.place, std::sqrt(found.squared_distance)};
+  }
+
+  double best() const { return best_; }
+
+  void visit(const Probe& a, const Probe& b, const Probe& c) {
+    best_ = std::max({best_, a.distance, b.distance, c.distance});
+    const double longest = std::sqrt(std::max(
+        {(a.point - b.point).squaredNorm(), (b.point - c.point).squaredNorm(), (c.point - a.point).squaredNorm()}));
+    if (!(longest > smallest_)) return;
+    // Every point is within longest / sqrt(3) of a corner, and no farther from the tree than the corner by more.
+    const double enough = best_ * (1 + kFarthestTolerance);
+    if (std::max({a.distance, b.distance, c.distance}) + 0.578 * longest <= enough) return;
+    if (upper_bound(a, b, c) <= enough) return;
+    const Probe ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    visit(a, ab, ca);
+    visit(ab, b, bc);
+    visit(ca, bc, c);
+    visit(ab, bc, ca);
+  }
+
+ private:
+  Probe middle(const Probe& a, const Probe& b) const { return probe(tree_, 0.5 * (a.point + b.point)); }
+
+  double upper_bound(const Probe& a, const Probe& b, const Probe& c) const {
+    double least = 1e300;
+    for (const Probe* of : {&a, &b, &c}) {
+      const auto& [x, y, z] = tree_.corners()[static_cast<std::size_t>(of->leaf_place)];
+      double most = 0;
+      for (const Probe* p : {&a, &b, &c})
+        most = std::max(most, (nearest_on_triangle(p->point, x, y, z) - p->point).squaredNorm());
+      least = std::min(least, most);
+    }
+    return std::sqrt(least);
+  }
+
+  const TriangleTree& tree_;
+  double best_, smallest_;
+};
+
+double edge_sum(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return (a - b).norm() + (b - c).norm() + (c - a).norm();
+}
+
+/// The smaller of the mean edges of both sides, m.
+double mean_edge(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles, const TriangleTree& tree) {
+  double own = 0, other = 0;
+  for (const auto& [a, b, c] : triangles)
+    own += edge_sum(points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)],
+                    points[static_cast<std::size_t>(c)]);
+  for (const auto& [a, b, c] : tree.corners()) other += edge_sum(a, b, c);
+  return std::min(own / static_cast<double>(triangles.size()), other / static_cast<double>(tree.corners().size())) / 3;
+}
+
+}  // namespace
+
+double farthest_distance(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                         const TriangleTree& tree, const Threads& threads) {
+  if (tree.nodes().empty() || triangles.empty()) return 0;
+  std::vector<bool> used(points.size(), false);
+  for (const Triangle& triangle : triangles)
+    for (const Index v : triangle) used[static_cast<std::size_t>(v)] = true;
+  std::vector<Probe> probes(points.size());
+  threads.for_chunks(static_cast<std::int64_t>(points.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)
+      if (used[v]) probes[v] = Search::probe(tree, points[v]);
+  });
+  double lower = 0;
+  for (const Probe& probe : probes) lower = std::max(lower, probe.distance);
+  const double smallest = kSmallest * mean_edge(points, triangles, tree);
+  const auto n = static_cast<std::int64_t>(triangles.size());
+  std::vector<double> farthest(static_cast<std::size_t>((n + kGrain - 1) / kGrain), lower);
+  threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Search search(tree, lower, smallest);
+    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+      const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
+      search.visit(corner(0), corner(1), corner(2));
+    }
+    farthest[static_cast<std::size_t>(begin / kGrain)] = search.best();
+  });
+  return *std::max_element(farthest.begin(), farthest.end());
+}
+
+}  // namespace softreel

@@ -1,0 +1,25 @@
+/// How far triangles are from a surface at most: one direction of the Hausdorff distance.
+#pragma once
+
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/tetmesh/triangle_tree.h"
+
+namespace softreel {
+
+/// The result of farthest_distance is at most this share of itself too small.
+constexpr double kFarthestTolerance = 0.01;
+
+/// Largest distance of any point of the triangles, their insides included, to the nearest triangle of `tree`, m; 0 if
+/// either is empty. Vertices that no triangle uses do not count.
+///
+/// Triangles are quartered where they may hold a farther point than found so far, until they are a quarter as long as
+/// the mean edge of the finer side; what lies between adds 0.15 of that edge at most. The distance to one triangle of
+/// the tree is convex, so over a triangle it is largest at a corner: the nearest triangles of the corners bound it from
+/// above. Cost: a search of the tree per vertex, and some more near the farthest points. Equal bits at any number of
+/// threads.
+double farthest_distance(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                         const TriangleTree& tree, const Threads& threads);
+
+}  // namespace softreel

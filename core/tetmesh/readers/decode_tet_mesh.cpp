@@ -1,0 +1,123 @@
+/// The checks that all formats of given tetrahedra share.
+#include <algorithm>
+#include <cmath>
+
+#include "core/mesh/surface_mesh.h"
+#include "core/tetmesh/readers/tet_file.h"
+#include "core/tetmesh/tet_mesh_file.h"
+
+namespace softreel {
+namespace {
+
+using detail::MeshSource;
+using detail::TetFileContents;
+
+/// An element is flat if its volume is below this share of its longest edge cubed: a sliver of a millionth of a degree.
+constexpr double kFlat = 1e-9;
+
+struct Format {
+  const char* extension;
+  TetFileContents (*read)(const MeshSource&);
+};
+constexpr Format kFormats[] = {
+    {".mesh", detail::read_medit}, {".msh", detail::read_gmsh}, {".vtk", detail::read_vtk}, {".vtu", detail::read_vtu}};
+
+void check_nodes(const MeshSource& source, const TetFileContents& contents) {
+  for (std::size_t i = 0; i < contents.nodes.size(); ++i)
+    if (!contents.nodes[i].allFinite())
+      throw broken_file(source, "", fmt::format("node {} has a coordinate that is not finite", i + 1),
+                        "finite coordinates", "Mend it in the tool that made it");
+  if (contents.tets.empty())
+    throw broken_file(source, "", "it has no tetrahedra", "at least one",
+                      "Mesh the inside of the body, not its surface");
+}
+
+Tet checked_tet(const MeshSource& source, const TetFileContents& contents, std::size_t e) {
+  Tet tet;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::int64_t node = contents.tets[e][k];
+    if (node < 0 || node >= static_cast<std::int64_t>(contents.nodes.size()))
+      throw broken_file(
+          source, "",
+          fmt::format("tetrahedron {} refers to node {}, counted from 0, which the file does not have", e + 1, node),
+          fmt::format("one of the file's {}", contents.nodes.size()), "Export the mesh again; the file may be cut off");
+    tet[k] = static_cast<Index>(node);
+  }
+  return tet;
+}
+
+/// Turns an inverted element round; true if it was one.
+bool orient(const MeshSource& source, const std::vector<Vec3>& nodes, std::size_t e, Tet& tet) {
+  std::array<Vec3, 4> x;
+  for (std::size_t k = 0; k < 4; ++k) x[k] = nodes[static_cast<std::size_t>(tet[k])];
+  double longest = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j) longest = std::max(longest, (x[i] - x[j]).norm());
+  const double volume = tet_volume(x[0], x[1], x[2], x[3]);
+  if (!(std::abs(volume) > kFlat * longest * longest * longest))
+    throw broken_file(source, "", fmt::format("tetrahedron {} has no volume ({:.3g} m^3)", e + 1, volume),
+                      "elements with volume", "Mesh the body again with a bound on the quality of elements");
+  if (volume < 0) std::swap(tet[2], tet[3]);
+  return volume < 0;
+}
+
+/// Leaves out the nodes that no element uses; returns their number.
+std::size_t drop_unused_nodes(TetMesh& mesh) {
+  std::vector<Index> number(mesh.nodes.size(), -1);
+  for (const Tet& tet : mesh.tets)
+    for (const Index node : tet) number[static_cast<std::size_t>(node)] = 0;
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] < 0) continue;
+    mesh.nodes[used] = mesh.nodes[i];
+    number[i] = static_cast<Index>(used++);
+  }
+  const std::size_t dropped = mesh.nodes.size() - used;
+  mesh.nodes.resize(used);
+  for (Tet& tet : mesh.tets)
+    for (Index& node : tet) node = number[static_cast<std::size_t>(node)];
+  return dropped;
+}
+
+LatticeFrame frame_of(const TetMesh& mesh) {
+  Bounds box;
+  for (const Vec3& p : mesh.nodes) box.add(p);
+  double sum = 0;
+  for (const Tet& tet : mesh.tets)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j)
+        sum += (mesh.nodes[static_cast<std::size_t>(tet[i])] - mesh.nodes[static_cast<std::size_t>(tet[j])]).norm();
+  return {box.center(), sum / (6.0 * static_cast<double>(mesh.tets.size()))};
+}
+
+}  // namespace
+
+bool is_tet_mesh_extension(const std::string& extension) {
+  return std::any_of(std::begin(kFormats), std::end(kFormats),
+                     [&](const Format& format) { return extension == format.extension; });
+}
+
+TetMesh decode_tet_mesh(const std::string& name, std::string_view bytes, const std::string& extension, const Log& log) {
+  const MeshSource source{name, bytes};
+  const Format* const format =
+      std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& f) { return extension == f.extension; });
+  if (format == std::end(kFormats))
+    throw detail::unread_variant(source, fmt::format("the format '{}' of tetrahedra", extension),
+                                 ".mesh (Medit), .msh (Gmsh), .vtk, .vtu (VTK)");
+  const TetFileContents contents = format->read(source);
+  check_nodes(source, contents);
+  TetMesh mesh;
+  mesh.nodes = contents.nodes;
+  std::size_t inverted = 0;
+  for (std::size_t e = 0; e < contents.tets.size(); ++e) {
+    mesh.tets.push_back(checked_tet(source, contents, e));
+    inverted += orient(source, mesh.nodes, e, mesh.tets.back()) ? 1 : 0;
+  }
+  if (inverted > 0) log.info(fmt::format("{}: {} inverted tetrahedra were turned round", name, inverted));
+  if (const std::size_t dropped = drop_unused_nodes(mesh); dropped > 0)
+    log.info(fmt::format("{}: {} nodes that no tetrahedron uses were left out", name, dropped));
+  mesh.lattice = frame_of(mesh);
+  return mesh;
+}
+
+}  // namespace softreel

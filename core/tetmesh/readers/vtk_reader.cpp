@@ -1,0 +1,101 @@
+/// VTK's legacy format, text and binary, with cells as lists (versions up to 4.2) or with offsets (5.1).
+#include "core/tetmesh/readers/vtk_cells.h"
+
+namespace softreel::detail {
+namespace {
+
+class VtkReader {
+ public:
+  explicit VtkReader(const MeshSource& source) : in_(source) {}
+
+  TetFileContents read() {
+    if (!in_.line().starts_with("# vtk DataFile"))
+      throw unread_variant(in_.source(), "a .vtk file that does not begin with '# vtk DataFile'",
+                           "VTK's legacy format");
+    in_.line();  // the title
+    const std::string_view encoding = in_.word();
+    if (encoding != "ASCII" && encoding != "BINARY") throw in_.not_a("ASCII or BINARY", encoding);
+    is_binary_ = encoding == "BINARY";
+    TetFileContents contents;
+    while (!in_.at_end()) {
+      const std::string keyword(in_.word());
+      if (keyword == "DATASET") {
+        if (const std::string kind(in_.word()); kind != "UNSTRUCTURED_GRID")
+          throw unread_variant(in_.source(), fmt::format("a data set '{}'", kind.substr(0, 30)), "UNSTRUCTURED_GRID");
+      } else if (keyword == "POINTS") {
+        read_points(contents);
+      } else if (keyword == "CELLS") {
+        read_cells();
+      } else if (keyword == "CELL_TYPES") {
+        types_ = values(in_.count(1), "int");
+      } else if (keyword == "METADATA") {
+        in_.line();
+        while (!in_.rest().empty() && !in_.line().empty()) continue;  // an empty line ends it
+      } else if (keyword == "POINT_DATA" || keyword == "CELL_DATA" || keyword == "FIELD") {
+        break;  // nothing that makes the mesh comes behind them
+      } else {
+        throw in_.not_a("keyword of an unstructured grid", keyword);
+      }
+    }
+    if (offsets_.empty()) throw in_.cut_off();
+    add_vtk_cells(in_.source(), connectivity_, offsets_, types_, contents);
+    return contents;
+  }
+
+ private:
+  /// `count` values; a binary block begins behind the line of its header.
+  std::vector<double> values(std::size_t count, const std::string& type) {
+    if (is_binary_) in_.line();
+    std::vector<double> list;
+    for (std::size_t i = 0; i < count; ++i) list.push_back(is_binary_ ? binary_value(type) : in_.number());
+    return list;
+  }
+
+  double binary_value(const std::string& type) {
+    if (type == "double") return in_.binary<double>(true);
+    if (type == "float") return in_.binary<float>(true);
+    if (type == "int") return in_.binary<std::int32_t>(true);
+    if (type == "vtktypeint64" || type == "long") return static_cast<double>(in_.binary<std::int64_t>(true));
+    throw unread_variant(in_.source(), fmt::format("the data type '{}'", type.substr(0, 30)),
+                         "float, double, int and vtktypeint64");
+  }
+
+  void read_points(TetFileContents& contents) {
+    const std::size_t count = in_.count(6);
+    const std::string type(in_.word());
+    const std::vector<double> list = values(3 * count, type);
+    for (std::size_t i = 0; i < count; ++i) contents.nodes.emplace_back(list[3 * i], list[3 * i + 1], list[3 * i + 2]);
+  }
+
+  void read_cells() {
+    const std::size_t count = in_.count(1), size = in_.count(1);
+    ByteReader ahead = in_;
+    if (!ahead.at_end() && ahead.word() == "OFFSETS") {
+      in_.word();
+      offsets_ = values(count, std::string(in_.word()));
+      if (in_.word() != "CONNECTIVITY") throw in_.cut_off();
+      connectivity_ = values(size, std::string(in_.word()));
+      return;
+    }
+    const std::vector<double> lists = values(size, "int");
+    offsets_.assign(1, 0);
+    for (std::size_t i = 0; i < lists.size();) {
+      const double length = lists[i++];
+      if (!(length >= 0) || length > static_cast<double>(lists.size() - i)) throw in_.cut_off();
+      for (double k = 0; k < length; ++k) connectivity_.push_back(lists[i++]);
+      offsets_.push_back(static_cast<double>(connectivity_.size()));
+    }
+  }
+
+  ByteReader in_;
+  bool is_binary_ = false;
+  std::vector<double> connectivity_, offsets_, types_;
+};
+
+}  // namespace
+
+TetFileContents read_vtk(const MeshSource& source) {
+  return VtkReader(source).read();
+}
+
+}  // namespace softreel::detail
