@@ -1,5 +1,6 @@
 #include "core/dynamics/simulator.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -45,6 +46,12 @@ BodyModel checked(BodyModel model) {
   return model;
 }
 
+MultigridParams with_poisson_ratio(MultigridParams params, const std::vector<ElementMaterial>& materials) {
+  for (const ElementMaterial& material : materials)
+    params.poisson_ratio = std::max(params.poisson_ratio, material.poisson_ratio);
+  return params;
+}
+
 }  // namespace
 
 Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads,
@@ -59,7 +66,8 @@ Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params,
       pins(model.pins, model.embedding, model.mesh),
       pieces(find_pieces(model.mesh.tets, model.mesh.nodes.size())),
       matrix{stiffness_pattern(model.mesh.tets, static_cast<Index>(model.mesh.nodes.size())), {}},
-      multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern, params.multigrid, threads),
+      multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern,
+                with_poisson_ratio(params.multigrid, model.materials), threads),
       body_size(box_diagonal(model.mesh.nodes)) {
   CHECK(params.newmark.is_stable());
   if (const std::string conflict = pins.find_conflict(); !conflict.empty()) throw input_error(conflict);

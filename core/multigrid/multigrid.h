@@ -23,7 +23,12 @@
 namespace softreel {
 
 enum class GalerkinMethod { Naive, Stream, Gather };
-enum class CycleKind { V, W };
+enum class CycleKind {
+  Auto,  ///< W; FullW where coarse nodes may have copies by stiffness
+  V,
+  W,     ///< V on the finest level, W below
+  FullW  ///< W from the finest level on, with weights: dearer, for what coarse lattices carry badly
+};
 
 /// What a solve iterates with.
 enum class SolveMethod {
@@ -40,14 +45,21 @@ enum class SmootherKind {
 struct MultigridParams {
   GalerkinMethod galerkin = GalerkinMethod::Gather;  ///< how R K R^T is formed; all agree to round-off
   SolveMethod method = SolveMethod::ConjugateGradients;
-  CycleKind coarse_cycle = CycleKind::W;  ///< below the finest level, which always takes one V
+  CycleKind coarse_cycle = CycleKind::Auto;
   SmootherKind smoother = SmootherKind::GaussSeidel;
-  int sweeps = 1;                  ///< of the smoother, before and after the coarse correction
+  /// Of the smoother, before and after the coarse correction. 0: 2 of symmetric Gauss-Seidel near incompressibility,
+  /// where one takes too many iterations; else 1.
+  int sweeps = 0;
+  double poisson_ratio = 0;        ///< the body's greatest, by which `sweeps` = 0 goes
   int chebyshev_degree = 2;        ///< of the polynomial, if that is the smoother
   int bottom_nodes = 150;          ///< a level of at most this many nodes goes to Cholesky; slender ones sooner
   double dropped_weight = 0.1;     ///< transfer weights below are dropped, the rest renormalised
   double stiffness_contrast = 10;  ///< coarse nodes are copied per side of an edge of more contrast
 };
+
+/// The parameters with what they leave open (sweeps, coarse_cycle) chosen for a body. element_stiffness: as for
+/// Multigrid.
+MultigridParams choose_for_body(MultigridParams params, std::span<const double> element_stiffness);
 
 /// One level as the report shows it.
 struct LevelInfo {

@@ -62,6 +62,9 @@ class Smoother {
     [[gnu::always_inline]] NodeLanes<Scalar> right_sum(std::int64_t i, const Scalar* x) const {
       return sum(diagonal[i] + 1, offsets[i + 1], x);
     }
+    [[gnu::always_inline]] NodeLanes<Scalar> rest_sum(std::int64_t i, const Scalar* x) const {
+      return sum(diagonal[i], offsets[i + 1], x);
+    }
     [[gnu::always_inline]] NodeLanes<Scalar> full_sum(std::int64_t i, const Scalar* x) const {
       return sum(offsets[i], offsets[i + 1], x);
     }

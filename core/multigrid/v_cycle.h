@@ -1,4 +1,4 @@
-/// One multigrid cycle in float or double: V on the finest level, V or W below, Cholesky on the last.
+/// One multigrid cycle in float or double: V or W, Cholesky on the last level.
 ///
 /// The cycle is a symmetric operator (adjoint smoothing before and after, R and its transpose), so it can precondition
 /// conjugate gradients.
@@ -18,10 +18,15 @@
 
 namespace softreel {
 
+/// Lengths of the two corrections by which a W improves a V.
+struct CycleWeights {
+  double first = 1, second = 1;
+};
+
 template <typename Scalar>
 class Cycle {
  public:
-  /// hierarchy and threads are kept by reference.
+  /// hierarchy and threads are kept by reference. What params leave open is chosen as for a homogeneous body.
   Cycle(const LatticeHierarchy& hierarchy, const MultigridParams& params, const Threads& threads);
 
   /// Takes the values of the mesh's matrix and rebuilds all levels. pinned: per mesh node, may be empty. False if the
@@ -69,6 +74,7 @@ class Cycle {
   void form_next(std::size_t h);
   void cycle(std::size_t h);
   void correct_from_next(std::size_t h);
+  void cycle_again(std::size_t h, const CycleWeights& weights);
 
   const LatticeHierarchy& hierarchy_;
   MultigridParams params_;

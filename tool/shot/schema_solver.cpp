@@ -118,7 +118,11 @@ const Table<Shot>& solver_table() {
             "Conjugate gradients preconditioned by a multigrid cycle, or the cycles alone, as in the paper.")
         .add(
             "cycle", [](auto& s) -> auto& { return s.solver.multigrid.coarse_cycle; },
-            choice<CycleKind>({{"w", CycleKind::W}, {"v", CycleKind::V}}), "", "Shape of a multigrid cycle.")
+            choice<CycleKind>(
+                {{"auto", CycleKind::Auto}, {"w", CycleKind::W}, {"v", CycleKind::V}, {"full_w", CycleKind::FullW}}),
+            "",
+            "Shape of a multigrid cycle; \"w\" is a V on the finest level. \"auto\" is \"w\", or \"full_w\" where "
+            "stiffness differs by more than 10.")
         .add(
             "smoother", [](auto& s) -> auto& { return s.solver.multigrid.smoother; },
             choice<SmootherKind>({{"gauss_seidel", SmootherKind::GaussSeidel},
@@ -128,8 +132,8 @@ const Table<Shot>& solver_table() {
             "Before and after coarse corrections: Gauss-Seidel forward and backward, or forward before and backward "
             "after (the paper's), or a Chebyshev polynomial.")
         .add(
-            "sweeps", [](auto& s) -> auto& { return s.solver.multigrid.sweeps; }, whole<int>(1, 100), "",
-            "Of the smoother, before and after each coarse correction.")
+            "sweeps", [](auto& s) -> auto& { return s.solver.multigrid.sweeps; }, whole<int>(0, 100), "",
+            "Of the smoother, before and after each coarse correction. 0: 2 if a poisson_ratio is above 0.475, else 1.")
         .add(
             "chebyshev_degree", [](auto& s) -> auto& { return s.solver.multigrid.chebyshev_degree; },
             whole<int>(1, 100), "", "Of the polynomial, where that is the smoother.")

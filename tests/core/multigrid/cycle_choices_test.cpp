@@ -23,12 +23,16 @@ struct Choice {
   SolveMethod method;
   SmootherKind smoother;
   CycleKind cycle = CycleKind::W;
+  int sweeps = 1;
 };
 
 constexpr Choice kChoices[] = {
     {"default", SolveMethod::ConjugateGradients, SmootherKind::GaussSeidel},
     {"one way", SolveMethod::ConjugateGradients, SmootherKind::OneWayGaussSeidel},
     {"chebyshev", SolveMethod::ConjugateGradients, SmootherKind::Chebyshev},
+    {"full w", SolveMethod::ConjugateGradients, SmootherKind::GaussSeidel, CycleKind::FullW},
+    {"two sweeps", SolveMethod::ConjugateGradients, SmootherKind::GaussSeidel, CycleKind::W, 2},
+    {"full w of two sweeps, cycles", SolveMethod::Cycles, SmootherKind::GaussSeidel, CycleKind::FullW, 2},
     {"cycles", SolveMethod::Cycles, SmootherKind::GaussSeidel},
     {"the paper's cycles", SolveMethod::Cycles, SmootherKind::OneWayGaussSeidel, CycleKind::V},
     {"chebyshev cycles", SolveMethod::Cycles, SmootherKind::Chebyshev},
@@ -39,6 +43,7 @@ MultigridParams params_of(const Choice& choice) {
   params.method = choice.method;
   params.smoother = choice.smoother;
   params.coarse_cycle = choice.cycle;
+  params.sweeps = choice.sweeps;
   params.bottom_nodes = 60;
   return params;
 }

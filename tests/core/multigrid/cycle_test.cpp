@@ -99,16 +99,23 @@ Eigen::MatrixXd dense_cycle(const TetMesh& mesh, const ElasticSystem& system, co
 TEST(Cycle, IsSymmetricAndPositiveAndLeavesPinsAtZero) {
   const TetMesh mesh = make_box({6, 3, 3}, 0.5);
   const ElasticSystem system = assemble(mesh, {}, [](const Vec3& x) { return x[0] < 1e-9; });
-  const std::pair<CycleKind, SmootherKind> choices[] = {{CycleKind::V, SmootherKind::GaussSeidel},
-                                                        {CycleKind::W, SmootherKind::GaussSeidel},
-                                                        {CycleKind::V, SmootherKind::OneWayGaussSeidel},
-                                                        {CycleKind::W, SmootherKind::OneWayGaussSeidel},
-                                                        {CycleKind::W, SmootherKind::Chebyshev}};
-  for (const auto& [kind, smoother] : choices) {
+  struct Choice {
+    CycleKind kind;
+    SmootherKind smoother;
+    int sweeps;
+  };
+  const Choice choices[] = {
+      {CycleKind::V, SmootherKind::GaussSeidel, 1},       {CycleKind::W, SmootherKind::GaussSeidel, 1},
+      {CycleKind::W, SmootherKind::GaussSeidel, 2},       {CycleKind::FullW, SmootherKind::GaussSeidel, 1},
+      {CycleKind::FullW, SmootherKind::GaussSeidel, 3},   {CycleKind::FullW, SmootherKind::Chebyshev, 1},
+      {CycleKind::V, SmootherKind::OneWayGaussSeidel, 1}, {CycleKind::W, SmootherKind::OneWayGaussSeidel, 1},
+      {CycleKind::W, SmootherKind::Chebyshev, 1}};
+  for (const auto& [kind, smoother, sweeps] : choices) {
     MultigridParams params;
     params.bottom_nodes = 20;
     params.coarse_cycle = kind;
     params.smoother = smoother;
+    params.sweeps = sweeps;
     const Eigen::MatrixXd M = dense_cycle(mesh, system, params);
     EXPECT_LE((M - M.transpose()).norm(), 1e-12 * M.norm());
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)

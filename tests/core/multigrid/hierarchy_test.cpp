@@ -176,6 +176,24 @@ TEST(LatticeHierarchy, CoversAMeshWithoutALattice) {
   EXPECT_GE(hierarchy.levels[0].pattern.rows(), 3 * hierarchy.levels[1].pattern.rows());
 }
 
+std::vector<Index> level_sizes(const TetMesh& mesh, const std::vector<double>& stiffness) {
+  std::vector<Index> sizes;
+  for (const LatticeLevel& level : build_lattice_hierarchy(mesh, stiffness, pattern_of(mesh), {}).levels)
+    sizes.push_back(level.pattern.rows());
+  return sizes;
+}
+
+TEST(LatticeHierarchy, LeavesCopiesOutWhereStiffAndSoftElementsAreMixedOneByOne) {
+  const TetMesh mesh = make_box({16, 6, 6}, 0.1);
+  std::vector<double> mixed, halves;
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    mixed.push_back(e * 2654435761u % 1000 < 100 ? 1e6 : 1);
+    halves.push_back(mesh.nodes[static_cast<std::size_t>(mesh.tets[e][0])][0] < 0.75 ? 1e6 : 1);
+  }
+  EXPECT_EQ(level_sizes(mesh, mixed), level_sizes(mesh, {}));
+  EXPECT_GT(level_sizes(mesh, halves)[1], level_sizes(mesh, {})[1]) << "few copies stay";
+}
+
 TEST(LatticeHierarchy, EndsWhereSeparatePiecesCannotGetFewer) {
   // 343 cubes that do not touch: each keeps its own coarse nodes, however coarse the lattice.
   const TetMesh mesh =

@@ -78,7 +78,29 @@ TEST(Multigrid, TakesNoMoreIterationsOnFinerMeshes) {
     }
 }
 
-TEST(Multigrid, TakesAFewTimesTheIterationsNearIncompressibility) {
+TEST(Multigrid, ChoosesSweepsAndCycleByTheBody) {
+  const std::vector<double> mild{1, 1, 5}, strong{1, 100, 1}, huge{1, 1e6, 1};
+  MultigridParams params;
+  EXPECT_EQ(choose_for_body(params, {}).sweeps, 1);
+  EXPECT_EQ(choose_for_body(params, {}).coarse_cycle, CycleKind::W);
+  EXPECT_EQ(choose_for_body(params, mild).coarse_cycle, CycleKind::W);
+  EXPECT_EQ(choose_for_body(params, strong).coarse_cycle, CycleKind::FullW);
+  EXPECT_EQ(choose_for_body(params, strong).sweeps, 1);
+  EXPECT_EQ(choose_for_body(params, huge).sweeps, 1);
+  params.poisson_ratio = 0.45;
+  EXPECT_EQ(choose_for_body(params, {}).sweeps, 1);
+  params.poisson_ratio = 0.49;
+  EXPECT_EQ(choose_for_body(params, {}).sweeps, 2);
+  EXPECT_EQ(choose_for_body(params, {}).coarse_cycle, CycleKind::W);
+  params.smoother = SmootherKind::OneWayGaussSeidel;
+  EXPECT_EQ(choose_for_body(params, {}).sweeps, 1) << "the paper's 1 + 1";
+  params.sweeps = 3;
+  params.coarse_cycle = CycleKind::V;
+  EXPECT_EQ(choose_for_body(params, huge).sweeps, 3);
+  EXPECT_EQ(choose_for_body(params, huge).coarse_cycle, CycleKind::V);
+}
+
+TEST(Multigrid, TakesAFewTimesTheIterationsNearIncompressibilityIfNotTold) {
   ElasticParams params;
   params.poisson_ratio = 0.3;
   const TetMesh mesh = test_support::make_bar(5);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/multigrid/chebyshev.h"
+#include "core/multigrid/gauss_seidel.h"
 #include "tests/core/multigrid/finest_level.h"
 #include "tests/support/elastic_box.h"
 
@@ -69,6 +70,38 @@ TEST(Smoother, FromZeroEqualsTheGeneralSweepFromZero) {
     smoother->smooth(1, b, y, threads);
     EXPECT_LE(difference(x, y), 1e-18);
     EXPECT_GT(norm(x), 0);
+  }
+}
+
+TEST(GaussSeidel, LengthensSeveralSweepsByTheirWeights) {
+  Finest finest;
+  const Threads threads(1);
+  const auto smoother = make(SmootherKind::GaussSeidel, finest);
+  ASSERT_TRUE(smoother->update(threads));
+  const NodeVector<double> b = random_vector(finest.matrix.pattern.rows(), 5);
+  NodeVector<double> x(b.size(), 0), y(b.size(), 0), swept(b.size(), 0), r(b.size(), 0);
+  for (const double weight : sweep_weights(3)) {
+    swept = y;
+    smoother->smooth(1, b, swept, threads);
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] += weight * (swept[k] - y[k]);
+  }
+  smoother->smooth_from_zero(3, b, x, r, threads);
+  EXPECT_LE(difference(x, y), 1e-12 * norm(y));
+  EXPECT_GT(difference(x, swept), 1e-3 * norm(y)) << "so weights matter here";
+}
+
+TEST(GaussSeidel, HasWeightsThatDampAllOfTheSpectrum) {
+  EXPECT_EQ(sweep_weights(1), std::vector<double>{1.0});
+  for (const int sweeps : {2, 3, 5}) {
+    double slope = 0, worst = 0;
+    for (const double weight : sweep_weights(sweeps)) slope += weight;
+    EXPECT_GT(slope, 1.5 * sweeps) << "what is smoothed badly is damped more than by plain sweeps";
+    for (double t = 1.0 / sweeps; t <= 1; t += 1e-3) {
+      double left = 1;
+      for (const double weight : sweep_weights(sweeps)) left *= 1 - weight * t;
+      worst = std::max(worst, std::abs(left));
+    }
+    EXPECT_LT(worst, 0.3) << sweeps;
   }
 }
 
