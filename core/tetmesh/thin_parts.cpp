@@ -145,33 +145,60 @@ class Round {
     bool torn = first < 0;
     for (std::size_t k = 1; k < 3; ++k) torn = set_of_vertex(corners[k], part) != first || torn;
     // Between corners that are far apart there may be gaps that no corner sees.
-    if (!torn)
-      visit_samples(triangle, 1.0, [&](const Vec3& p) { torn = torn || firm_.near(p, part, parts_) != first; });
+    if (!torn && steps(triangle, 1.0) > 1)
+      visit_samples(triangle, steps(triangle, 1.0),
+                    [&](const Vec3& p, int, int) { torn = torn || firm_.near(p, part, parts_) != first; });
     if (torn) fill(triangle, part);
   }
 
-  /// Calls visit(point) on a grid over the triangle with steps of at most `step` spacings; corners are left out where
-  /// the triangle is smaller than that.
-  template <typename Visit>
-  void visit_samples(Index triangle, double step, const Visit& visit) const {
-    const Vec3 &a = corner(triangle, 0), ab = corner(triangle, 1) - a, ac = corner(triangle, 2) - a;
-    const double longest = std::max({ab.norm(), ac.norm(), (ab - ac).norm()});
-    const int n = static_cast<int>(std::ceil(longest / (step * distance_.lattice.frame.spacing)));
-    if (n <= 1) return;
-    for (int i = 0; i <= n; ++i)
-      for (int j = 0; i + j <= n; ++j)
-        visit(Vec3(a + (static_cast<double>(i) / n) * ab + (static_cast<double>(j) / n) * ac));
+  /// Into how many parts a triangle's sides are to be cut for steps of at most `step` spacings.
+  int steps(Index triangle, double step) const {
+    const Vec3 &a = corner(triangle, 0), &b = corner(triangle, 1), &c = corner(triangle, 2);
+    const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
+    return std::max(1, static_cast<int>(std::ceil(longest / (step * distance_.lattice.frame.spacing))));
   }
 
-  /// Takes in the nodes under a triangle: a little below the surface, where a thin part has its middle.
+  /// Calls visit(point, i, j) at corner 0 + i / n to corner 1 + j / n to corner 2, i + j <= n.
+  template <typename Visit>
+  void visit_samples(Index triangle, int n, const Visit& visit) const {
+    const Vec3 &a = corner(triangle, 0), ab = corner(triangle, 1) - a, ac = corner(triangle, 2) - a;
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j)
+        visit(Vec3(a + (static_cast<double>(i) / n) * ab + (static_cast<double>(j) / n) * ac), i, j);
+  }
+
+  /// Where a triangle is lost or falls apart: samples without a firm node, or beside one of another set, and what lies
+  /// within kWindow samples of them. Row i of the grid, place j.
+  std::vector<std::vector<bool>> find_tears(Index triangle, Index part, int n) {
+    constexpr int kWindow = 4;
+    const auto size = static_cast<std::size_t>(n) + 1;
+    std::vector<std::vector<Index>> sets(size, std::vector<Index>(size, -1));
+    visit_samples(triangle, n, [&](const Vec3& p, int i, int j) { sets[at(i)][at(j)] = firm_.near(p, part, parts_); });
+    std::vector<std::vector<bool>> near_tear(size, std::vector<bool>(size, false));
+    const auto mark = [&](int i, int j) {
+      for (int k = std::max(0, i - kWindow); k <= std::min(n, i + kWindow); ++k)
+        for (int l = std::max(0, j - kWindow); l <= std::min(n - k, j + kWindow); ++l) near_tear[at(k)][at(l)] = true;
+    };
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j) {
+        const Index own = sets[at(i)][at(j)];
+        const bool last = i + j == n;
+        if (own < 0 || (!last && (sets[at(i + 1)][at(j)] != own || sets[at(i)][at(j + 1)] != own))) mark(i, j);
+      }
+    return near_tear;
+  }
+
+  /// Takes in the nodes under a triangle where it tears: a little below the surface, where a thin part has its middle.
   void fill(Index triangle, Index part) {
-    constexpr double kStep = 0.12, kDepth = 0.25;
+    constexpr double kTearStep = 0.5, kStep = 0.12, kDepth = 0.25;
     const Vec3 &a = corner(triangle, 0), area = (corner(triangle, 1) - a).cross(corner(triangle, 2) - a);
     if (!(area.norm() > 0)) return;
     const Vec3 under = -kDepth * distance_.lattice.frame.spacing * area.normalized();
-    const auto take = [&](const Vec3& p) { take_in(p + under, triangle, part); };
-    for (std::size_t k = 0; k < 3; ++k) take(corner(triangle, k));
-    visit_samples(triangle, kStep, take);
+    const int coarse = steps(triangle, kTearStep), fine = steps(triangle, kStep);
+    const std::vector<std::vector<bool>> near_tear = find_tears(triangle, part, coarse);
+    visit_samples(triangle, fine, [&](const Vec3& p, int i, int j) {
+      if (near_tear[at(i * coarse / fine)][at(j * coarse / fine)]) take_in(p + under, triangle, part);
+    });
   }
 
   void take_in(const Vec3& point, Index triangle, Index part) {

@@ -2,8 +2,8 @@
 ///
 /// skip_benchmark [THREADS] prints tab-separated values. Cases: a long bar, clamped in the middle, one end of which is
 /// pulled aside (half of it hardly moves); the same bar, heavily damped, pulled soon and watched until it is at rest.
-/// `difference` is from the run that skips nothing, `error` from one with a tolerance of 1e-10, both the greatest of all
-/// nodes and frames over the greatest way that a node goes.
+/// `difference` is from the run that skips nothing, `error` from one with a tolerance of 1e-10, both the greatest of
+/// all nodes and frames over the greatest way that a node goes.
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>

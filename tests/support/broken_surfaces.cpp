@@ -170,6 +170,13 @@ void add_parts(List& list) {
   add(list, "TwoPieces", with(ball(), ball(0.6, Vec3(3, 0, 0))), kBallVolume * 1.216, 0.04, 2);
   add(list, "SharedFace", with(block(Vec3(0.5, 0.5, 0.5), Vec3(0, 0, 0)), block(Vec3(0.5, 0.5, 0.5), Vec3(1, 0, 0))), 2,
       0.06);
+  // What hangs by a corner or an edge is welded there, about one edge of the lattice thick.
+  SurfaceMesh by_edge = block(Vec3(0.5, 0.5, 0.5), Vec3(0, 0, 0));
+  append(by_edge, block(Vec3(0.5, 0.5, 0.5), Vec3(1, 1, 0)));
+  add(list, "SharedEdge", std::move(by_edge), 2, 0.12);
+  SurfaceMesh by_corner = block(Vec3(0.5, 0.5, 0.5), Vec3(0, 0, 0));
+  append(by_corner, block(Vec3(0.5, 0.5, 0.5), Vec3(1, 1, 1)));
+  add(list, "SharedCorner", std::move(by_corner), 2, 0.08);
   refuse(list, "TinyPart", with(ball(), ball(0.01, Vec3(1.6, 0, 0))), "part 2 of 2");
   refuse(list, "ThinShell", with(ball(), flipped(ball(0.97))), "too thin for the lattice");
 }
