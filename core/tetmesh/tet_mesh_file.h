@@ -25,7 +25,7 @@ bool is_tet_mesh_extension(const std::string& extension);
 /// uncompressed) or legacy .vtk (text, binary).
 ///
 /// name: of the file, for messages. Points, lines and faces are skipped. Inverted elements are turned round and nodes
-/// that no element uses are left out, each said in one line of `log`. The lattice for the hierarchy gets the mean edge.
+/// that no element uses are left out, each said in one line of `log`. The mesh has no lattice.
 /// Throws input_error, one clear message, for what is broken: an index out of range, a position that is not finite, an
 /// element without volume, elements of other shapes or orders, a file that ends early or has no tetrahedra.
 TetMesh decode_tet_mesh(const std::string& name, std::string_view bytes, const std::string& extension, const Log& log);

@@ -180,11 +180,10 @@ StuffedMesh fill_with_error(const Job& job, double error) {
   }();
   StuffedMesh& stuffed = filling.stuffed;
   if (stuffed.mesh.tets.empty()) return std::move(stuffed);
-  const LatticeFrame frame = stuffed.mesh.lattice;
   stuffed.mesh.lattice.spacing = filling.finest_edge;  // what is small, and what is too thin, is judged by that
   drop_crumbs(stuffed, filling.distance, job.parts, job.name, job.log);
   require_all_parts(stuffed, filling.distance, job.parts, job.name, job.log);
-  stuffed.mesh.lattice = frame;
+  stuffed.mesh.lattice = {};  // none of one size: the hierarchy finds coarse lattices of its own, and converges better
   order_nodes(stuffed);
   const ScopedStage stage(job.times, "tetrahedralize/check");
   if (const double reached = measure_deviation(job.surface, stuffed.mesh, job.threads).two_way(); reached > error)

@@ -16,7 +16,7 @@ namespace softreel {
 struct TetrahedralizeParams {
   double edge = 0;        ///< long edge of the lattice, m
   std::int64_t tets = 0;  ///< wanted number of tetrahedra, met within 5 %
-  double error = 0;       ///< wanted two-way distance to the surface, m: sizes are graded, see error_budget.h
+  double error = 0;       ///< wanted two-way distance to the surface, m: graded, see error_budget.h; no lattice
   double thickness = 0;   ///< of the open parts of the surface, m; 0: they count as closed where they nearly are
 };
 

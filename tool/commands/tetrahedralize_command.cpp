@@ -72,8 +72,10 @@ std::string to_json(const TetrahedralizeOptions& options, const Result& result) 
 
 void print_text(const TetrahedralizeOptions& options, const Result& result) {
   const TetQuality& quality = result.quality;
-  std::printf("%s: %zu tetrahedra, %zu nodes, long edge %.6g, volume %.6g\n", options.output.c_str(),
-              result.mesh.tets.size(), result.mesh.nodes.size(), result.mesh.lattice.spacing, quality.volume);
+  const double edge = result.mesh.lattice.spacing;
+  std::printf("%s: %zu tetrahedra, %zu nodes, %s, volume %.6g\n", options.output.c_str(), result.mesh.tets.size(),
+              result.mesh.nodes.size(), edge > 0 ? fmt::format("long edge {:.6g}", edge).c_str() : "graded",
+              quality.volume);
   std::printf("  dihedral angles: min %.2f, first percentile %.2f, max %.2f degrees\n", quality.min_dihedral,
               quality.first_percentile_dihedral, quality.max_dihedral);
   std::printf("  distance to the surface: at most %.4g (%.3f %% of the box diagonal)\n", result.deviation.two_way(),

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/readers/tet_file.h"
 #include "core/tetmesh/tet_mesh_file.h"
 
@@ -79,17 +78,6 @@ std::size_t drop_unused_nodes(TetMesh& mesh) {
   return dropped;
 }
 
-LatticeFrame frame_of(const TetMesh& mesh) {
-  Bounds box;
-  for (const Vec3& p : mesh.nodes) box.add(p);
-  double sum = 0;
-  for (const Tet& tet : mesh.tets)
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j)
-        sum += (mesh.nodes[static_cast<std::size_t>(tet[i])] - mesh.nodes[static_cast<std::size_t>(tet[j])]).norm();
-  return {box.center(), sum / (6.0 * static_cast<double>(mesh.tets.size()))};
-}
-
 }  // namespace
 
 bool is_tet_mesh_extension(const std::string& extension) {
@@ -116,7 +104,6 @@ TetMesh decode_tet_mesh(const std::string& name, std::string_view bytes, const s
   if (inverted > 0) log.info(fmt::format("{}: {} inverted tetrahedra were turned round", name, inverted));
   if (const std::size_t dropped = drop_unused_nodes(mesh); dropped > 0)
     log.info(fmt::format("{}: {} nodes that no tetrahedron uses were left out", name, dropped));
-  mesh.lattice = frame_of(mesh);
   return mesh;
 }
 

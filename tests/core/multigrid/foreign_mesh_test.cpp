@@ -8,8 +8,10 @@
 
 #include "core/multigrid/lattice_hierarchy.h"
 #include "core/multigrid/multigrid.h"
+#include "core/tetmesh/tetrahedralize.h"
 #include "tests/support/bcc_bar.h"
 #include "tests/support/elastic_box.h"
+#include "tests/support/surfaces.h"
 
 namespace softreel {
 namespace {
@@ -133,6 +135,23 @@ TEST(ForeignMesh, TakesForTwoLegsAboutTheIterationsOfOne) {
       if (!lattice) one.lattice = two.lattice = {};
       EXPECT_LE(iterations(two, seconds, 1e-9, 2), 1.2 * iterations(one, seconds, 1e-9, 2));
     }
+}
+
+TEST(ForeignMesh, AGradedMeshConvergesTooWithMoreIterationsThanAUniformOne) {
+  // A ball with a thin spike along x that asks for small tetrahedra, pinned at the other end.
+  SurfaceMesh surface = test::make_sphere(1, 60, Vec3::Zero());
+  for (Vec3& p : surface.positions) {
+    const double across = std::hypot(p.y(), p.z());
+    if (p.x() > 0 && across < 0.12) p.x() += 12 * (0.12 - across);
+  }
+  const Threads threads(1);
+  const Log log{[](const std::string&) {}, [](const std::string& line) { ADD_FAILURE() << line; }};
+  StageTimes times;
+  const TetMesh graded = tetrahedralize(surface, {.error = 0.02}, "spiked", threads, log, times);
+  const TetMesh uniform =
+      tetrahedralize(surface, {.tets = static_cast<std::int64_t>(graded.tets.size())}, "spiked", threads, log, times);
+  for (const double seconds : {0.0, 1.0 / 96})
+    EXPECT_LE(iterations(graded, seconds, -0.9), 2.5 * iterations(uniform, seconds, -0.9));
 }
 
 }  // namespace
