@@ -207,7 +207,27 @@ void require_params(const SurfaceMesh& surface, const TetrahedralizeParams& para
                     name));
 }
 
-/// The surface with joined vertices in one place, and with its open parts thickened.
+/// Leaves out the vertices that no triangle uses: what looks at vertices is not to see them.
+void drop_unused_vertices(SurfaceMesh& mesh) {
+  std::vector<Index> number(mesh.positions.size(), -1);
+  for (const Triangle& triangle : mesh.triangles)
+    for (const Index v : triangle) number[static_cast<std::size_t>(v)] = 0;
+  std::vector<Vec3> used;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] < 0) continue;
+    number[v] = static_cast<Index>(used.size());
+    used.push_back(mesh.positions[v]);
+  }
+  const auto renumber = [&](Index& v) { v = number[static_cast<std::size_t>(v)]; };
+  for (Triangle& triangle : mesh.triangles) std::for_each(triangle.begin(), triangle.end(), renumber);
+  for (VertexGroup& group : mesh.groups) {
+    std::for_each(group.vertices.begin(), group.vertices.end(), renumber);
+    std::erase(group.vertices, -1);
+  }
+  mesh.positions = std::move(used);
+}
+
+/// What is filled: the surface's used vertices, joined ones in one place, and its open parts thickened.
 SurfaceMesh prepare(const SurfaceMesh& surface, double thickness, const std::string& name, const Log& log) {
   SurfaceMesh prepared;
   prepared.positions = surface.positions;
@@ -219,6 +239,7 @@ SurfaceMesh prepare(const SurfaceMesh& surface, double thickness, const std::str
     if (const std::int64_t open = thicken_sheets(prepared, find_parts(prepared), thickness); open > 0)
       log.info(
           fmt::format("body '{}': {} triangles of open parts became sheets {:.4g} m thick", name, open, thickness));
+  drop_unused_vertices(prepared);
   return prepared;
 }
 
@@ -260,7 +281,7 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
                     name, stuffed.mesh.lattice.spacing));
   if (params.error == 0) {
     const ScopedStage stage(times, "tetrahedralize/fit");
-    fit_boundary(stuffed, surface, {}, threads);
+    fit_boundary(stuffed, prepared, {}, threads);
   }
   require_quality(job, stuffed.mesh,
                   params.error > 0 ? AngleBounds{kMinGradedDihedral, kMaxGradedDihedral} : AngleBounds{});

@@ -161,7 +161,7 @@ void add_faces(List& list) {
 void add_parts(List& list) {
   // Two unit balls 0.8 apart share a lens of pi (4 + d) (2 - d)^2 / 12.
   const double lens = std::numbers::pi * 4.8 * 1.2 * 1.2 / 12;
-  add(list, "OverlappingBalls", with(ball(), ball(1, Vec3(0.8, 0, 0))), 2 * kBallVolume - lens);
+  add(list, "OverlappingBalls", with(ball(), ball(1, Vec3(0.8, 0, 0))), 2 * kBallVolume - lens, 0.06);
   add(list, "Cavity", with(ball(), flipped(ball(0.5))), kBallVolume * (1 - 0.125));
   add(list, "ShellInShell", with(ball(), ball(0.5)), kBallVolume);
   add(list, "ThreeShells", with(with(ball(), flipped(ball(0.75))), ball(0.4)), kBallVolume * (1 - 0.421875 + 0.064),

@@ -17,7 +17,8 @@ TetMesh fill(const test::BrokenSurface& broken, std::vector<std::string>& lines,
   lines = repair_mesh(mesh);
   const auto collect = [&](const std::string& line) { lines.push_back(line); };
   StageTimes times;
-  return tetrahedralize(mesh, {broken.edge, 0, broken.thickness}, "blob", Threads(threads), {collect, collect}, times);
+  return tetrahedralize(mesh, {.edge = broken.edge, .thickness = broken.thickness}, "blob", Threads(threads),
+                        {collect, collect}, times);
 }
 
 TEST_P(BrokenSurfaces, AreFilledOrRefused) {
