@@ -7,6 +7,7 @@
 
 #include "core/mesh/mesh_topology.h"
 #include "core/tetmesh/key_index.h"
+#include "core/tetmesh/winding_number.h"
 
 namespace softreel {
 namespace {
@@ -110,6 +111,33 @@ SurfaceParts find_parts(const SurfaceMesh& surface) {
                                       group.empty() ? "" : "group '" + group + "', ", found.parts[p].triangles);
   }
   return found;
+}
+
+Index find_sheet(const SurfaceMesh& surface, const SurfaceParts& parts) {
+  constexpr std::size_t kSamples = 64;  // of a part
+  constexpr double kOffset = 1e-4;      // of the box's diagonal
+  constexpr double kBothSides = 0.3;    // a plane has 0.5, a closed surface 0
+  if (std::none_of(parts.parts.begin(), parts.parts.end(), [](const SurfacePart& part) { return part.open; }))
+    return -1;
+  const WindingNumber winding(surface.positions, surface.triangles);
+  const double offset = kOffset * used_bounds(surface).diagonal();
+  std::vector<std::size_t> seen(parts.parts.size(), 0), sampled(parts.parts.size(), 0);
+  std::vector<double> sums(parts.parts.size(), 0);
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const std::size_t part = at(parts.triangle_parts[t]);
+    const std::size_t stride = static_cast<std::size_t>(parts.parts[part].triangles) / kSamples + 1;
+    if (!parts.parts[part].open || seen[part]++ % stride != 0) continue;
+    std::array<Vec3, 3> x;
+    for (std::size_t k = 0; k < 3; ++k) x[k] = surface.positions[at(surface.triangles[t][k])];
+    const Vec3 area = (x[1] - x[0]).cross(x[2] - x[0]), middle = (x[0] + x[1] + x[2]) / 3;
+    if (!(area.norm() > 0)) continue;
+    const Vec3 out = offset * area.normalized();
+    sums[part] += std::min(std::abs(winding(middle + out)), std::abs(winding(middle - out)));
+    ++sampled[part];
+  }
+  for (std::size_t part = 0; part < sums.size(); ++part)
+    if (sums[part] > kBothSides * static_cast<double>(sampled[part])) return static_cast<Index>(part);
+  return -1;
 }
 
 }  // namespace softreel

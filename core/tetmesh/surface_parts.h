@@ -28,6 +28,10 @@ struct SurfaceParts {
   double volume() const;
 };
 
+/// The first open part that encloses nothing: on both sides of it the surface goes about half round, as it does beside
+/// a plane. -1 if there is none. A part with holes has an inside as long as they are smaller than the rest.
+Index find_sheet(const SurfaceMesh& surface, const SurfaceParts& parts);
+
 SurfaceParts find_parts(const SurfaceMesh& surface);
 
 }  // namespace softreel

@@ -207,6 +207,19 @@ void require_params(const SurfaceMesh& surface, const TetrahedralizeParams& para
                     name));
 }
 
+/// An open sheet has no inside; what its winding numbers would make of it is nobody's wish.
+void require_inside(const Job& job) {
+  const Index sheet = find_sheet(job.surface, job.parts);
+  if (sheet < 0) return;
+  const SurfacePart& part = job.parts.parts[static_cast<std::size_t>(sheet)];
+  const Vec3 center = part.box.center();
+  throw input_error(fmt::format(
+      "body '{}': {} near ({:.4g}, {:.4g}, {:.4g}) is an open sheet: it encloses nothing. Accepted: a "
+      "surface that encloses a volume, or an open sheet with a thickness. Set thickness, close the surface, "
+      "or take the part out of it.",
+      job.name, part.name, center[0], center[1], center[2]));
+}
+
 /// Leaves out the vertices that no triangle uses: what looks at vertices is not to see them.
 void drop_unused_vertices(SurfaceMesh& mesh) {
   std::vector<Index> number(mesh.positions.size(), -1);
@@ -271,6 +284,7 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
   const Bounds box = used_bounds(prepared);
   const Job job{prepared, parts, box, name, threads, log, times};
   require_volume(job);
+  require_inside(job);
   StuffedMesh stuffed = params.error > 0  ? fill_with_error(job, params.error)
                         : params.edge > 0 ? fill_surface(job, params.edge)
                                           : fill_with_count(job, static_cast<double>(params.tets));

@@ -194,6 +194,9 @@ void add_soups(List& list) {
 
 void add_sheets(List& list) {
   refuse(list, "OpenSheet", sheet(), "thickness");
+  refuse(list, "FinelyFilledSheet", sheet(), "open sheet");
+  list.back().edge = 0.05;
+  add(list, "OpenBowl", without(ball(), [](const Vec3& p) { return p.y() > 0; }), 0.5 * kBallVolume, 0.1);
   refuse(list, "OneSidedSheet", moebius(), "thickness");
   add(list, "ThickSheet", sheet(), 0.2 * 1.02, 0.08);
   list.back().edge = 0.1;
