@@ -152,10 +152,12 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
 StepReport solve_step(Simulator::Parts& parts, double frame, StepWork& work) {
   const RecoveryReport recovery = find_step_rotations(parts, frame, work);
   StepReport report;
-  if (linearization(parts.params) == Linearize::Iterated && recovery.elements == 0)
+  if (linearization(parts.params) == Linearize::Iterated && recovery.elements == 0) {
+    parts.coarse_lag.usable = false;  // its tangents take the place of the float matrix
     report = iterate_step(parts, work);
-  else
+  } else {
     report.solve = solve_once(parts, work, report);
+  }
   report.recovery = recovery;
   return report;
 }

@@ -95,9 +95,10 @@ int run_tetrahedralize(const TetrahedralizeOptions& options) {
   result.surface = import_mesh(options.mesh, log);
   for (const std::string& line : repair_mesh(result.surface)) log.info(line);
   if (options.fit > 0) apply(place(result.surface, {.fit = options.fit}), result.surface);
-  TetrahedralizeParams params{options.edge, options.tets,
-                              parse_error_budget(options.error, used_bounds(result.surface).diagonal()),
-                              options.thickness};
+  TetrahedralizeParams params{.edge = options.edge,
+                              .tets = options.tets,
+                              .error = parse_error_budget(options.error, used_bounds(result.surface).diagonal()),
+                              .thickness = options.thickness};
   if (params.edge == 0 && params.tets == 0 && params.error == 0) params.tets = 20000;
   const auto start = std::chrono::steady_clock::now();
   result.mesh = tetrahedralize(result.surface, params, options.mesh, threads, log, times);

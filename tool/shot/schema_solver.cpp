@@ -31,113 +31,132 @@ void check_newmark(const Place& place, const TomlValue& value, const NewmarkPara
       fmt::format("Say newmark_beta = {:.6g}, or leave both out for 1/4 and 1/2.", 0.5 * newmark.gamma));
 }
 
+using P = SolverParams;
+using M = MultigridParams;
+
+/// A member of the solver's parameters, as a member of the shot.
+auto of_solver(auto member) {
+  return [member](auto& s) -> auto& {
+    return s.solver.*member;
+  };
+}
+
+auto of_newmark(auto member) {
+  return [member](auto& s) -> auto& {
+    return s.solver.newmark.*member;
+  };
+}
+
+auto of_multigrid(auto member) {
+  return [member](auto& s) -> auto& {
+    return s.solver.multigrid.*member;
+  };
+}
+
+void add_material_law(Table<Shot>& t) {
+  t.add("rotation", of_solver(&P::rotation),
+        choice<RotationMethod>({{"consistent", RotationMethod::Consistent},
+                                {"energy", RotationMethod::Energy},
+                                {"paper", RotationMethod::Paper},
+                                {"polar_smooth", RotationMethod::PolarSmooth},
+                                {"qr", RotationMethod::Qr},
+                                {"none", RotationMethod::None}}),
+        "",
+        "Of each tetrahedron: polar, by the paper's energy safely or by its bare Newton, polar averaged over "
+        "neighbours, Gram-Schmidt (depends on the order of nodes), or none (small strain only).")
+      .add("dilatation", of_solver(&P::dilatation),
+           choice<Dilatation>({{"capped", Dilatation::Capped}, {"linear", Dilatation::Linear}}), "",
+           "\"capped\" keeps strong stretch stable; \"linear\" is the bare linear material.")
+      .add("recovery", of_solver(&P::recovery), toggle(), "",
+           "dynamic: untangle elements that stay inverted or wound round an edge, by one rotation for each patch of "
+           "them.");
+}
+
+void add_time_stepping(Table<Shot>& t) {
+  t.add(
+       "integrator", of_solver(&P::integrator),
+       choice<Integrator>({{"euler", Integrator::Euler}, {"bdf2", Integrator::Bdf2}, {"newmark", Integrator::Newmark}}),
+       "",
+       "dynamic: \"euler\" forgives most and damps most, \"bdf2\" damps what is fast only, \"newmark\" keeps "
+       "energy (at its defaults).")
+      .add("newmark_beta", of_newmark(&NewmarkParams::beta), number({0.25, 1}), "",
+           "\"newmark\": share of the last acceleration in the way, halved. At least newmark_gamma / 2.")
+      .add("newmark_gamma", of_newmark(&NewmarkParams::gamma), number({0.5, 1}), "",
+           "\"newmark\": share of the last acceleration in the velocity. Above 0.5 it damps and is of first order.")
+      .add("linearize", of_solver(&P::linearize),
+           choice<Linearize>({{"auto", Linearize::Auto},
+                              {"start", Linearize::Start},
+                              {"predictor", Linearize::Predictor},
+                              {"iterated", Linearize::Iterated}}),
+           "",
+           "dynamic: a step's one solve takes rotations and forces at its \"start\" (of first order) or at the "
+           "\"predictor\" of its end (keeps second order); \"iterated\" solves until forces balance at its end. "
+           "\"auto\" is \"start\" for \"euler\", else \"predictor\".")
+      .add("substeps", of_solver(&P::substeps), whole<int>(1, 10000), "per frame",
+           "Steps of time in a frame; with step_error, the fewest.")
+      .add("step_error", of_solver(&P::step_error), number({0, 1}), "",
+           "dynamic: steps get shorter until their estimated error of place, over the body's size, is below; 0: off.")
+      .add("max_substeps", of_solver(&P::max_substeps), whole<int>(1, kMostSubsteps), "per frame",
+           "step_error: the most steps of a frame. If they do not do, the run stops and says so.")
+      .add("rest_tolerance", of_solver(&P::rest_tolerance), number({0, 1}), "",
+           "dynamic: a body is not stepped if its velocities would move no point by more than this times its size, "
+           "its forces balance to force_tolerance and its pins stay; 0: every body is stepped.")
+      .add("matrix_lag", of_solver(&P::matrix_lag), number({0, 1}), "",
+           "dynamic: within a frame, elements whose matrix would change by less than this times tolerance keep it; 0: "
+           "only where nothing changes.")
+      .add("keep_hierarchy", of_solver(&P::keep_hierarchy), toggle(), "",
+           "dynamic: within a frame, coarse levels stay while the solver needs no more iterations with them.");
+}
+
+void add_limits(Table<Shot>& t) {
+  constexpr Range kTolerance{0, 1, true};
+  t.add("tolerance", of_solver(&P::tolerance), number(kTolerance), "",
+        "dynamic: residual of a step's linear solve over its right-hand side.")
+      .add("force_tolerance", of_solver(&P::force_tolerance), number(kTolerance), "",
+           "static, iterated: residual force over the body's scale of force.")
+      .add("max_iterations", of_solver(&P::max_iterations), whole<int>(1, 1000000), "", "Of one linear solve.")
+      .add("max_newton_iterations", of_solver(&P::max_newton_iterations), whole<int>(1, 1000000), "",
+           "static: per frame; iterated: per step.");
+}
+
+void add_multigrid(Table<Shot>& t) {
+  t.add("galerkin", of_multigrid(&M::galerkin),
+        choice<GalerkinMethod>(
+            {{"gather", GalerkinMethod::Gather}, {"stream", GalerkinMethod::Stream}, {"naive", GalerkinMethod::Naive}}),
+        "", "How coarse matrices are formed; all give the same up to round-off.")
+      .add("method", of_multigrid(&M::method),
+           choice<SolveMethod>({{"cg", SolveMethod::ConjugateGradients}, {"cycles", SolveMethod::Cycles}}), "",
+           "Conjugate gradients preconditioned by a multigrid cycle, or the cycles alone, as in the paper.")
+      .add("cycle", of_multigrid(&M::coarse_cycle),
+           choice<CycleKind>(
+               {{"auto", CycleKind::Auto}, {"w", CycleKind::W}, {"v", CycleKind::V}, {"full_w", CycleKind::FullW}}),
+           "",
+           "Shape of a multigrid cycle; \"w\" is a V on the finest level. \"auto\" is \"w\", or \"full_w\" where "
+           "stiffness differs by more than 10.")
+      .add("smoother", of_multigrid(&M::smoother),
+           choice<SmootherKind>({{"gauss_seidel", SmootherKind::GaussSeidel},
+                                 {"one_way_gauss_seidel", SmootherKind::OneWayGaussSeidel},
+                                 {"chebyshev", SmootherKind::Chebyshev}}),
+           "",
+           "Before and after coarse corrections: Gauss-Seidel forward and backward, or forward before and backward "
+           "after (the paper's), or a Chebyshev polynomial.")
+      .add("sweeps", of_multigrid(&M::sweeps), whole<int>(0, 100), "",
+           "Of the smoother, before and after each coarse correction. 0: 2 if a poisson_ratio is above 0.475, else 1.")
+      .add("chebyshev_degree", of_multigrid(&M::chebyshev_degree), whole<int>(1, 100), "",
+           "Of the polynomial, where that is the smoother.");
+}
+
 }  // namespace
 
 const Table<Shot>& solver_table() {
   static const Table<Shot> table = [] {
     Table<Shot> t;
-    const auto of_solver = [](auto member) {
-      return [member](auto& s) -> auto& {
-        return s.solver.*member;
-      };
-    };
-    using P = SolverParams;
-    const auto of_newmark = [](auto member) {
-      return [member](auto& s) -> auto& {
-        return s.solver.newmark.*member;
-      };
-    };
-    constexpr Range kTolerance{0, 1, true};
     t.sentence = "How the motion is computed.";
-    t.add("rotation", of_solver(&P::rotation),
-          choice<RotationMethod>({{"consistent", RotationMethod::Consistent},
-                                  {"energy", RotationMethod::Energy},
-                                  {"paper", RotationMethod::Paper},
-                                  {"polar_smooth", RotationMethod::PolarSmooth},
-                                  {"qr", RotationMethod::Qr},
-                                  {"none", RotationMethod::None}}),
-          "",
-          "Of each tetrahedron: polar, by the paper's energy safely or by its bare Newton, polar averaged over "
-          "neighbours, Gram-Schmidt (depends on the order of nodes), or none (small strain only).")
-        .add("dilatation", of_solver(&P::dilatation),
-             choice<Dilatation>({{"capped", Dilatation::Capped}, {"linear", Dilatation::Linear}}), "",
-             "\"capped\" keeps strong stretch stable; \"linear\" is the bare linear material.")
-        .add("recovery", of_solver(&P::recovery), toggle(), "",
-             "dynamic: untangle elements that stay inverted or wound round an edge, by one rotation for each patch of "
-             "them.")
-        .add("integrator", of_solver(&P::integrator),
-             choice<Integrator>(
-                 {{"euler", Integrator::Euler}, {"bdf2", Integrator::Bdf2}, {"newmark", Integrator::Newmark}}),
-             "",
-             "dynamic: \"euler\" forgives most and damps most, \"bdf2\" damps what is fast only, \"newmark\" keeps "
-             "energy (at its defaults).")
-        .add("newmark_beta", of_newmark(&NewmarkParams::beta), number({0.25, 1}), "",
-             "\"newmark\": share of the last acceleration in the way, halved. At least newmark_gamma / 2.")
-        .add("newmark_gamma", of_newmark(&NewmarkParams::gamma), number({0.5, 1}), "",
-             "\"newmark\": share of the last acceleration in the velocity. Above 0.5 it damps and is of first order.")
-        .add("linearize", of_solver(&P::linearize),
-             choice<Linearize>({{"auto", Linearize::Auto},
-                                {"start", Linearize::Start},
-                                {"predictor", Linearize::Predictor},
-                                {"iterated", Linearize::Iterated}}),
-             "",
-             "dynamic: a step's one solve takes rotations and forces at its \"start\" (of first order) or at the "
-             "\"predictor\" of its end (keeps second order); \"iterated\" solves until forces balance at its end. "
-             "\"auto\" is \"start\" for \"euler\", else \"predictor\".")
-        .add("substeps", of_solver(&P::substeps), whole<int>(1, 10000), "per frame",
-             "Steps of time in a frame; with step_error, the fewest.")
-        .add("step_error", of_solver(&P::step_error), number({0, 1}), "",
-             "dynamic: steps get shorter until their estimated error of place, over the body's size, is below; 0: off.")
-        .add("max_substeps", of_solver(&P::max_substeps), whole<int>(1, kMostSubsteps), "per frame",
-             "step_error: the most steps of a frame. If they do not do, the run stops and says so.")
-        .add("rest_tolerance", of_solver(&P::rest_tolerance), number({0, 1}), "",
-             "dynamic: a body is not stepped if its velocities would move no point by more than this times its size, "
-             "its forces balance to force_tolerance and its pins stay; 0: every body is stepped.")
-        .add(
-            "matrix_lag", of_solver(&P::matrix_lag), number({0, 1}), "",
-            "dynamic: within a frame, elements whose matrix would change by less than this times tolerance keep it; 0: "
-            "only where nothing changes.")
-        .add("keep_hierarchy", of_solver(&P::keep_hierarchy), toggle(), "",
-             "dynamic: within a frame, coarse levels stay while the solver needs no more iterations with them.")
-        .add("tolerance", of_solver(&P::tolerance), number(kTolerance), "",
-             "dynamic: residual of a step's linear solve over its right-hand side.")
-        .add("force_tolerance", of_solver(&P::force_tolerance), number(kTolerance), "",
-             "static, iterated: residual force over the body's scale of force.")
-        .add("max_iterations", of_solver(&P::max_iterations), whole<int>(1, 1000000), "", "Of one linear solve.")
-        .add("max_newton_iterations", of_solver(&P::max_newton_iterations), whole<int>(1, 1000000), "",
-             "static: per frame; iterated: per step.")
-        .add(
-            "galerkin", [](auto& s) -> auto& { return s.solver.multigrid.galerkin; },
-            choice<GalerkinMethod>({{"gather", GalerkinMethod::Gather},
-                                    {"stream", GalerkinMethod::Stream},
-                                    {"naive", GalerkinMethod::Naive}}),
-            "", "How coarse matrices are formed; all give the same up to round-off.")
-        .add(
-            "method", [](auto& s) -> auto& { return s.solver.multigrid.method; },
-            choice<SolveMethod>({{"cg", SolveMethod::ConjugateGradients}, {"cycles", SolveMethod::Cycles}}), "",
-            "Conjugate gradients preconditioned by a multigrid cycle, or the cycles alone, as in the paper.")
-        .add(
-            "cycle", [](auto& s) -> auto& { return s.solver.multigrid.coarse_cycle; },
-            choice<CycleKind>(
-                {{"auto", CycleKind::Auto}, {"w", CycleKind::W}, {"v", CycleKind::V}, {"full_w", CycleKind::FullW}}),
-            "",
-            "Shape of a multigrid cycle; \"w\" is a V on the finest level. \"auto\" is \"w\", or \"full_w\" where "
-            "stiffness differs by more than 10.")
-        .add(
-            "smoother", [](auto& s) -> auto& { return s.solver.multigrid.smoother; },
-            choice<SmootherKind>({{"gauss_seidel", SmootherKind::GaussSeidel},
-                                  {"one_way_gauss_seidel", SmootherKind::OneWayGaussSeidel},
-                                  {"chebyshev", SmootherKind::Chebyshev}}),
-            "",
-            "Before and after coarse corrections: Gauss-Seidel forward and backward, or forward before and backward "
-            "after (the paper's), or a Chebyshev polynomial.")
-        .add(
-            "sweeps", [](auto& s) -> auto& { return s.solver.multigrid.sweeps; }, whole<int>(0, 100), "",
-            "Of the smoother, before and after each coarse correction. 0: 2 if a poisson_ratio is above 0.475, else 1.")
-        .add(
-            "chebyshev_degree", [](auto& s) -> auto& { return s.solver.multigrid.chebyshev_degree; },
-            whole<int>(1, 100), "", "Of the polynomial, where that is the smoother.")
-        .add("threads", &Shot::threads, whole<int>(0, 4096), "", "0: all processors. Results do not depend on it.");
+    add_material_law(t);
+    add_time_stepping(t);
+    add_limits(t);
+    add_multigrid(t);
+    t.add("threads", &Shot::threads, whole<int>(0, 4096), "", "0: all processors. Results do not depend on it.");
     t.check = [](const Place& place, const TomlValue& value, Shot& shot) {
       check_newmark(place, value, shot.solver.newmark);
       check_substeps(place, value, shot.solver);

@@ -127,8 +127,8 @@ FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const S
   FilledBody filled;
   filled.normals = vertex_normals(loaded.surface, loaded.surface.positions);
   const auto fill = [&] {
-    filled.mesh = tetrahedralize(loaded.surface, {body.edge, body.tets, 0, body.thickness}, body.name, context.threads,
-                                 context.log, context.times);
+    filled.mesh = tetrahedralize(loaded.surface, {.edge = body.edge, .tets = body.tets, .thickness = body.thickness},
+                                 body.name, context.threads, context.log, context.times);
     const ScopedStage stage(context.times, "tetrahedralize/embed");
     filled.embedding = embed_points(loaded.surface.positions, filled.normals, filled.mesh, context.threads);
     return pack(filled);
