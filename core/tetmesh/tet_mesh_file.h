@@ -30,4 +30,11 @@ bool is_tet_mesh_extension(const std::string& extension);
 /// element without volume, elements of other shapes or orders, a file that ends early or has no tetrahedra.
 TetMesh decode_tet_mesh(const std::string& name, std::string_view bytes, const std::string& extension, const Log& log);
 
+/// True if a file holds tetrahedra by its extension, in letters of either size, and is not a surface that shares it:
+/// Ogre's binary .mesh.
+bool is_tet_mesh_file(const std::string& path);
+
+/// decode_tet_mesh of a file. Throws input_error for one that is missing or cannot be read, too.
+TetMesh read_tet_mesh(const std::string& path, const Log& log);
+
 }  // namespace softreel

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,7 +11,6 @@
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
 #include "tool/commands/commands.h"
-#include "tool/stages/atomic_file.h"
 
 namespace softreel {
 namespace {
@@ -54,10 +52,9 @@ struct TetFacts {
   Index pieces = 0;
 };
 
-TetFacts read_tets(const std::string& path, const std::string& extension, const Log& log) {
-  const std::vector<std::uint8_t> bytes = read_file(path);
+TetFacts read_tets(const std::string& path, const Log& log) {
   TetFacts facts;
-  facts.mesh = decode_tet_mesh(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, extension, log);
+  facts.mesh = read_tet_mesh(path, log);
   facts.quality = measure_quality(facts.mesh, Threads());
   for (const Vec3& p : facts.mesh.nodes) facts.box.add(p);
   facts.boundary_faces = find_boundary(facts.mesh).size();
@@ -82,8 +79,8 @@ void print_tets_json(const InspectOptions& options, const TetFacts& facts) {
   std::printf("%s\n", json.dump(1).c_str());
 }
 
-int inspect_tets(const InspectOptions& options, const std::string& extension, const Log& log) {
-  const TetFacts facts = read_tets(options.mesh, extension, log);
+int inspect_tets(const InspectOptions& options, const Log& log) {
+  const TetFacts facts = read_tets(options.mesh, log);
   if (options.json) {
     print_tets_json(options, facts);
     return 0;
@@ -102,8 +99,7 @@ int inspect_tets(const InspectOptions& options, const std::string& extension, co
 
 int run_inspect(const InspectOptions& options) {
   Console console(Verbosity::Normal, isatty(STDERR_FILENO) != 0);
-  const std::string extension = std::filesystem::path(options.mesh).extension().string();
-  if (is_tet_mesh_extension(extension)) return inspect_tets(options, extension, console.log());
+  if (is_tet_mesh_file(options.mesh)) return inspect_tets(options, console.log());
   SurfaceMesh mesh = import_mesh(options.mesh, console.log());
   const MeshFacts facts = check_mesh(mesh);
   const std::vector<std::string> repairs = repair_mesh(mesh);

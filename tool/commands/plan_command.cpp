@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <set>
 #include <vector>
@@ -23,6 +24,8 @@ constexpr double kPathsPerSecond = 2e6;        ///< two threads
 constexpr double kBytesPerTet = 1200;          ///< matrix, hierarchy, state
 constexpr double kBytesPerTriangle = 700;      ///< surface, normals, trees
 constexpr double kBytesPerPixel = 48;
+/// Of graded bodies, per square of the wanted distance on the sides of the body's box.
+constexpr double kTetsPerSquaredError = 0.3;
 
 struct Plan {
   double tets = 0, triangles = 0;
@@ -30,10 +33,16 @@ struct Plan {
   double fill_seconds = 0, simulate_seconds = 0, render_seconds = 0, bytes = 0;
 };
 
-/// Tetrahedra that a body will have: as asked for, or from the volume of its box where the edge is given (an upper
-/// bound: 12 in each cell of the lattice).
-double expected_tets(const BodySettings& body, const Vec3& size) {
+/// Tetrahedra that a body will have: as given or asked for, or from the volume of its box where the edge is given (an
+/// upper bound: 12 in each cell of the lattice).
+double expected_tets(const BodySettings& body, const LoadedBody& loaded) {
+  if (loaded.given) return static_cast<double>(loaded.given->tets.size());
   if (body.tets > 0) return static_cast<double>(body.tets);
+  const Vec3 size = used_bounds(loaded.surface).size();
+  if (body.error.value > 0) {
+    const double area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+    return kTetsPerSquaredError * area / std::pow(body.error.in_meters(size.norm()), 2);
+  }
   return 12 * size.prod() / (body.edge * body.edge * body.edge);
 }
 
@@ -60,7 +69,7 @@ Plan make_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan
   plan.traced = static_cast<int>(needed.size());
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const LoadedBody& loaded = run.loaded(b);
-    const double tets = expected_tets(shot.bodies[b], used_bounds(loaded.surface).size());
+    const double tets = expected_tets(shot.bodies[b], loaded);
     const int simulated = frames_to_simulate(run, b, needed);
     plan.tets += tets;
     plan.triangles += static_cast<double>(loaded.surface.triangles.size());
@@ -92,8 +101,7 @@ int run_plan(const ShotOptions& options) {
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const bool cached = session.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key());
     std::printf("  fill %s: %zu triangles, about %.0f tetrahedra%s\n", shot.bodies[b].name.c_str(),
-                run.loaded(b).surface.triangles.size(),
-                expected_tets(shot.bodies[b], used_bounds(run.loaded(b).surface).size()),
+                run.loaded(b).surface.triangles.size(), expected_tets(shot.bodies[b], run.loaded(b)),
                 cached ? " (in the cache already)" : "");
   }
   std::printf(

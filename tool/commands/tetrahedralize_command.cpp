@@ -1,7 +1,6 @@
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/tetrahedralize.h"
 #include "tool/commands/commands.h"
+#include "tool/shot/codecs.h"
 #include "tool/stages/atomic_file.h"
 
 namespace softreel {
@@ -38,19 +38,14 @@ void check_extension(const std::string& path) {
                   path, extension));
 }
 
-/// --error in metres: a number, or a share of the diagonal with a % sign.
+/// --error in the mesh's unit.
 double parse_error_budget(const std::string& text, double diagonal) {
   if (text.empty()) return 0;
-  const bool is_share = text.back() == '%';
-  const char* const end = text.data() + text.size() - (is_share ? 1 : 0);
-  double value = 0;
-  const auto [stopped, code] = std::from_chars(text.data(), end, value);
-  if (code != std::errc{} || stopped != end || !(value > 0) || !std::isfinite(value) || (is_share && value > 50))
-    throw input_error(fmt::format(
-        "--error {}: this is no distance.\n  Accepted: a length above 0 in the mesh's unit, or a share of the diagonal "
-        "of its box above 0 and up to 50 % (0.3%). Use 0.3% if you do not know.",
-        text));
-  return is_share ? value / 100 * diagonal : value;
+  if (const std::optional<BodyLength> length = parse_body_length(text)) return length->in_meters(diagonal);
+  throw input_error(fmt::format(
+      "--error {}: this is no distance.\n  Accepted: a length above 0 in the mesh's unit, or a share of the diagonal "
+      "of its box above 0 and up to 50 % (0.3%). Use 0.3% if you do not know.",
+      text));
 }
 
 std::string to_json(const TetrahedralizeOptions& options, const Result& result) {

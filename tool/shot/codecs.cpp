@@ -173,6 +173,36 @@ Codec<std::string> file_name() {
   return codec;
 }
 
+std::optional<BodyLength> parse_body_length(const std::string& text) {
+  constexpr double kMostPercent = 50;
+  const bool is_share = !text.empty() && text.back() == '%';
+  const char* const end = text.data() + text.size() - (is_share ? 1 : 0);
+  double value = 0;
+  const auto [stopped, code] = std::from_chars(text.data(), end, value);
+  if (code != std::errc{} || stopped != end || !(value > 0) || !std::isfinite(value)) return std::nullopt;
+  if (is_share && value > kMostPercent) return std::nullopt;
+  return BodyLength{is_share ? value / 100 : value, is_share};
+}
+
+Codec<BodyLength> body_length() {
+  Codec<BodyLength> codec;
+  codec.type = "number or percent";
+  codec.accepted = "above 0, or a share of the diagonal of the body's box in quotes: \"0.3%\", up to 50 %";
+  codec.parse = [](const Place& place, const TomlValue& value) {
+    if (value.text() == nullptr) return BodyLength{parse_number(place, value, kPositive), false};
+    const std::optional<BodyLength> length = parse_body_length(*value.text());
+    if (!length) throw value_error(place, value, "it is no length");
+    return *length;
+  };
+  codec.print = [](const BodyLength& length) -> std::optional<TomlValue> {
+    if (length.value == 0) return std::nullopt;
+    if (!length.is_share) return print_number(length.value);
+    const double percent = invert_exactly([](double p) { return p / 100; }, length.value, length.value * 100);
+    return toml_value(fmt::format("{}%", percent));
+  };
+  return codec;
+}
+
 Codec<std::string> file_path() {
   Codec<std::string> codec = text();
   codec.type = "path";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "core/base/types.h"
 #include "core/constraints/keys.h"
 #include "tool/shot/schema_table.h"
+#include "tool/shot/shot.h"
 
 namespace softreel {
 
@@ -53,6 +55,11 @@ inline constexpr const char* kFileNameAccepted =
     "text that can be part of a file's name: no '/', no control characters, not '.' or '..'";
 bool is_file_name(const std::string& name);
 Codec<std::string> file_name();
+/// Reads "0.3%" (of the diagonal of a body's box, up to 50 %) or a number: a length above 0. None if it is neither.
+std::optional<BodyLength> parse_body_length(const std::string& text);
+/// A number in m, or a share of the diagonal as text with a % sign.
+Codec<BodyLength> body_length();
+
 /// A path, relative to the file that says it (or to the working directory in an override); printed absolute, so that a
 /// written shot can lie anywhere. An empty path is left out.
 Codec<std::string> file_path();

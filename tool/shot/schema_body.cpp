@@ -100,7 +100,8 @@ const Table<PullSettings>& pull_table() {
 /// Fields that say where the body stands and how finely it is divided.
 void add_placement_fields(Table<BodySettings>& t) {
   using B = BodySettings;
-  t.require("mesh", &B::mesh, file_path(), "", "The surface: PLY, OBJ, STL, glTF and what else assimp reads.")
+  t.require("mesh", &B::mesh, file_path(), "",
+            "The surface: PLY, OBJ, STL, glTF and what else assimp reads; or tetrahedra.")
       .add("up", &B::up, choice<UpAxis>({{"x", UpAxis::X}, {"y", UpAxis::Y}, {"z", UpAxis::Z}}), "",
            "The file's axis that points up.")
       .add("fit", &B::fit, absent_if_zero(number(kPositive)), "m",
@@ -112,9 +113,17 @@ void add_placement_fields(Table<BodySettings>& t) {
       .add("material", &B::material, text(), "", "Name of a [material.NAME].",
            "the only material, or the one named \"default\", which is built in where there is none")
       .add("tets", &B::tets, absent_if_zero(whole<std::int64_t>(1, kMostTets)), "",
-           "About how many tetrahedra fill the body; instead of edge.", std::to_string(kDefaultTets))
+           "How many tetrahedra fill the body, within 5 %; instead of edge, error or tetrahedra.",
+           std::to_string(kDefaultTets))
       .add("edge", &B::edge, absent_if_zero(number(kPositive)), "m", "Longest edge of the tetrahedra; instead of tets.",
            "from tets")
+      .add("error", &B::error, body_length(), "m",
+           "How far the tetrahedra may be from the surface: sizes are graded to keep to that; instead of tets.",
+           "what tets gives")
+      .add("tetrahedra", &B::tetrahedra, file_path(), "",
+           "Tetrahedra made elsewhere, in the place and unit of mesh: .mesh (Medit), .msh (Gmsh), .vtk, .vtu; instead "
+           "of tets. Such a file as mesh is both: its boundary is the surface.",
+           "made by softreel")
       .add("thickness", &B::thickness, absent_if_zero(number(kPositive)), "m",
            "Of open sheets in the surface, which then become solid.",
            "open parts count as closed where they nearly are");
@@ -126,7 +135,8 @@ void check_body(const Place& place, const TomlValue& value, BodySettings& body) 
     throw value_error({place.path, &name, place.problems}, value, "files are named after the body", "Rename it.");
   }
   check_alternatives(place, value, "body.*");
-  if (body.edge == 0 && body.tets == 0) body.tets = kDefaultTets;
+  const bool sized = body.edge > 0 || body.tets > 0 || body.error.value > 0 || !body.tetrahedra.empty();
+  if (!sized) body.tets = kDefaultTets;
   body.mesh_origin = value.find("mesh")->origin;
 }
 

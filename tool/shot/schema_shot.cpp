@@ -220,8 +220,9 @@ void add_bodies_and_materials(Table<Shot>& table) {
 }  // namespace
 
 const std::vector<Alternatives>& alternatives() {
-  static const std::vector<Alternatives> all{
-      {"body.*", {"tets", "edge"}}, {"body.*", {"fit", "scale"}}, {"body.*.region[]", {"material", "stiffness"}}};
+  static const std::vector<Alternatives> all{{"body.*", {"tets", "edge", "error", "tetrahedra"}},
+                                             {"body.*", {"fit", "scale"}},
+                                             {"body.*.region[]", {"material", "stiffness"}}};
   return all;
 }
 

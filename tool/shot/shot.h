@@ -47,6 +47,15 @@ struct MaterialSettings {
   Appearance appearance;
 };
 
+/// A length, or a share of the diagonal of a body's box.
+struct BodyLength {
+  double value = 0;       ///< m, or share of the diagonal; 0: not given
+  bool is_share = false;  ///< of the diagonal
+
+  double in_meters(double diagonal) const { return is_share ? value * diagonal : value; }
+  friend bool operator==(const BodyLength&, const BodyLength&) = default;
+};
+
 /// Where regions overlap, the later one holds.
 struct RegionSettings {
   Selection select;
@@ -85,9 +94,11 @@ struct BodySettings {
   Vec3 translate = Vec3::Zero();   ///< m
   Vec3 rotate_deg = Vec3::Zero();  ///< about x, then y, then z
   std::string material;            ///< name
+  std::string tetrahedra;          ///< resolved path of given tetrahedra; or
   double edge = 0;                 ///< m; or
+  std::int64_t tets = 0;           ///< number of tetrahedra; or
+  BodyLength error;                ///< largest distance to the surface; one of the four is set
   double thickness = 0;            ///< m, of open sheets; 0: none
-  std::int64_t tets = 0;           ///< number of tetrahedra; one of the two is set
   std::vector<RegionSettings> regions;
   std::vector<PinSettings> pins;
   std::vector<PullSettings> pulls;

@@ -1,16 +1,14 @@
 #include "tool/stages/body_stage.h"
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include "core/base/check.h"
-#include "core/mesh/mesh_check.h"
-#include "core/mesh/mesh_repair.h"
-#include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/tetrahedralize.h"
-#include "tool/stages/atomic_file.h"
+#include "core/tetmesh/triangle_tree.h"
+#include "tool/stages/at_field.h"
 #include "tool/stages/bytes.h"
 #include "tool/stages/stage_names.h"
 
@@ -18,18 +16,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same surface would give other tetrahedra or another embedding.
-constexpr const char* kFillVersion = "tetrahedra 3";
-
-PlacementParams placement_params(const BodySettings& body) {
-  PlacementParams params;
-  using Up = PlacementParams::Up;
-  params.up = body.up == UpAxis::X ? Up::X : body.up == UpAxis::Z ? Up::Z : Up::Y;
-  params.fit = body.fit;
-  params.scale = body.scale;
-  params.translate = body.translate;
-  params.rotate_rad = body.rotate_deg * (std::numbers::pi / 180);
-  return params;
-}
+constexpr const char* kFillVersion = "tetrahedra 4";
 
 std::vector<std::uint8_t> pack(const FilledBody& filled) {
   ByteWriter out;
@@ -73,53 +60,43 @@ std::vector<Vec3> element_centroids(const TetMesh& mesh) {
 
 namespace {
 
-/// Runs `work`; its errors get the place of the field that asked for it.
-template <typename Work>
-auto at_field(const Origin& origin, const std::string& field, Work work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    throw Error(error.kind(), fmt::format("{}: {}: {}", to_string(origin), field, error.what()));
+/// The wanted distance to the surface, m; 0: none.
+double budget_of(const BodySettings& body, const LoadedBody& loaded) {
+  return body.error.in_meters(used_bounds(loaded.surface).diagonal());
+}
+
+TetMesh make_tets(const BodySettings& body, const LoadedBody& loaded, const RunContext& context) {
+  if (loaded.given) return *loaded.given;
+  const TetrahedralizeParams params{
+      .edge = body.edge, .tets = body.tets, .error = budget_of(body, loaded), .thickness = body.thickness};
+  return tetrahedralize(loaded.surface, params, body.name, context.threads, context.log, context.times);
+}
+
+/// Given tetrahedra of another body, or in another unit, would carry the surface anywhere.
+void require_match(const BodySettings& body, const LoadedBody& loaded, const FilledBody& filled) {
+  constexpr double kFarthest = 0.02;  // of the box's diagonal
+  const double limit = kFarthest * used_bounds(loaded.surface).diagonal();
+  const TriangleTree tree(filled.mesh.nodes, boundary_faces(filled.mesh));
+  for (std::size_t v = 0; v < loaded.surface.positions.size(); ++v) {
+    const std::array<double, 4>& weights = filled.embedding.weights[v];
+    if (*std::min_element(weights.begin(), weights.end()) >= 0) continue;
+    const Vec3& p = loaded.surface.positions[v];
+    const double distance = (tree.nearest(p).point - p).norm();
+    if (distance <= limit) continue;
+    throw input_error(fmt::format(
+        "{}: body.{}.tetrahedra: {} does not fit {}: vertex {} is {:.3g} m outside of the tetrahedra.\n  Accepted: "
+        "tetrahedra in the place and unit of the surface, {:.3g} m from it at most. Export both from one scene.",
+        to_string(body.origin), body.name, body.tetrahedra, body.mesh, v, distance, limit));
   }
 }
 
 }  // namespace
 
-namespace {
-
-StageKey mesh_key(const SurfaceMesh& mesh) {
-  KeyHasher key("mesh 1");
-  key.add(mesh.positions).add(mesh.triangles);
-  for (const Vec2& at : mesh.texture_coordinates) key.add(at.x()).add(at.y());
-  const PolygonList& polygons = mesh.polygons;
-  key.add(polygons.offsets).add(polygons.corner_vertices).add(polygons.corner_textures).add(polygons.polygon_groups);
-  for (const VertexGroup& group : mesh.groups) key.add(group.name).add(group.vertices);
-  return key.key();
-}
-
-}  // namespace
-
-LoadedBody load_body(const BodySettings& body, const RunContext& context) {
-  const ScopedStage stage(context.times, "load");
-  const std::string field = fmt::format("body.{}.mesh", body.name);
-  LoadedBody loaded;
-  loaded.file_mesh = at_field(body.mesh_origin, field, [&] { return import_mesh(body.mesh, context.log); });
-  const MeshFacts facts = check_mesh(loaded.file_mesh);
-  loaded.facts = describe(facts);
-  for (std::string& line : repair_mesh(loaded.file_mesh)) loaded.facts.push_back(std::move(line));
-  if (loaded.file_mesh.triangles.empty())
-    throw input_error(fmt::format("{}: {}: no usable triangle is left.\n  Accepted: a surface that encloses a volume.",
-                                  to_string(body.mesh_origin), body.mesh));
-  loaded.file_key = mesh_key(loaded.file_mesh);
-  loaded.placement = at_field(body.mesh_origin, field, [&] { return place(loaded.file_mesh, placement_params(body)); });
-  loaded.surface = loaded.file_mesh;
-  apply(loaded.placement, loaded.surface);
-  loaded.key = KeyHasher("surface 1").add(loaded.surface.positions).add(loaded.surface.triangles).key();
-  return loaded;
-}
-
 StageKey filled_key(const BodySettings& body, const LoadedBody& loaded) {
-  return KeyHasher(kFillVersion).add(loaded.key).add(body.edge).add(body.tets).add(body.thickness).key();
+  KeyHasher key(kFillVersion);
+  key.add(loaded.key);
+  if (loaded.given) return key.add(loaded.given->nodes).add(loaded.given->tets).key();
+  return key.add(body.edge).add(body.tets).add(budget_of(body, loaded)).add(body.thickness).key();
 }
 
 FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const StageKey& key,
@@ -127,10 +104,10 @@ FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const S
   FilledBody filled;
   filled.normals = vertex_normals(loaded.surface, loaded.surface.positions);
   const auto fill = [&] {
-    filled.mesh = tetrahedralize(loaded.surface, {.edge = body.edge, .tets = body.tets, .thickness = body.thickness},
-                                 body.name, context.threads, context.log, context.times);
+    filled.mesh = make_tets(body, loaded, context);
     const ScopedStage stage(context.times, "tetrahedralize/embed");
     filled.embedding = embed_points(loaded.surface.positions, filled.normals, filled.mesh, context.threads);
+    if (!body.tetrahedra.empty()) require_match(body, loaded, filled);
     return pack(filled);
   };
   const Cache::Produced produced = context.cache.produce(

@@ -1,30 +1,16 @@
-/// The stages before time starts: load, tetrahedralise, embed, select; one body at a time.
+/// The stages between loading and time: tetrahedralise, embed, select; one body at a time.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "core/dynamics/simulator.h"
-#include "core/mesh/placement.h"
-#include "core/mesh/surface_mesh.h"
 #include "tool/shot/shot.h"
 #include "tool/stages/key.h"
+#include "tool/stages/loaded_body.h"
 #include "tool/stages/run_context.h"
 
 namespace softreel {
-
-/// A body's surface as its file has it and as it stands in the scene.
-struct LoadedBody {
-  SurfaceMesh file_mesh;  ///< repaired triangles, positions in file units
-  SurfaceMesh surface;    ///< the same, placed (m)
-  Placement placement;
-  std::vector<std::string> facts;  ///< what check and repair found, one line each
-  StageKey key;                    ///< of surface.positions and surface.triangles
-  StageKey file_key;               ///< of all that the mesh file says, before placement
-};
-
-/// Reads, checks, repairs and places the mesh of a body. Throws input_error.
-LoadedBody load_body(const BodySettings& body, const RunContext& context);
 
 /// Pins and pulls on points of the surface.
 struct BodyConstraints {

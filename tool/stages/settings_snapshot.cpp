@@ -113,6 +113,9 @@ SettingsSnapshot snapshot(const ShotRun& run) {
     BodySettings& body = with_paths.bodies[b];
     body.mesh = absolute(body.mesh);
     snapshot[std::string(kMeshPrefix) + body.mesh] = run.loaded(b).file_key;
+    if (body.tetrahedra.empty()) continue;
+    body.tetrahedra = absolute(body.tetrahedra);
+    snapshot[std::string(kMeshPrefix) + body.tetrahedra] = run.loaded(b).given_key;
   }
   if (!with_paths.environment_image.empty()) {
     with_paths.environment_image = absolute(with_paths.environment_image);

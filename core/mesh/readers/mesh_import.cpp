@@ -1,10 +1,5 @@
 #include "core/mesh/readers/mesh_import.h"
 
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
-#include <fstream>
-
 #include <fmt/format.h>
 
 #include "core/base/part.h"
@@ -18,37 +13,6 @@
 
 namespace softreel {
 namespace {
-
-namespace fs = std::filesystem;
-
-void require_regular_file(const std::string& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  if (!fs::exists(status)) throw detail::unusable_file(path, "there is no such mesh file", "Check the path");
-  if (fs::is_directory(status))
-    throw detail::unusable_file(path, "this is a folder, not a mesh file", "Name a file in it");
-  if (!fs::is_regular_file(status))
-    throw detail::unusable_file(path, "this is not a regular file", "Save the mesh to a file");
-  if (fs::file_size(path, ignored) == 0)
-    throw detail::unusable_file(path, "the mesh file is empty", "Export the mesh again");
-}
-
-std::string read_bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes;
-  std::error_code ignored;
-  bytes.resize(fs::file_size(path, ignored));
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file) throw detail::unusable_file(path, "the mesh file cannot be read", "Check its permissions");
-  return bytes;
-}
-
-std::string lower_extension(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 using Reader = SurfaceMesh (*)(const detail::MeshSource&, const Log&);
 
@@ -82,11 +46,11 @@ SurfaceMesh read_with_assimp(const std::string& path, const Log&) {
 }  // namespace
 
 SurfaceMesh import_mesh(const std::string& path, const Log& log) {
-  require_regular_file(path);
-  const Reader reader = own_reader(lower_extension(path));
+  detail::require_mesh_file(path);
+  const Reader reader = own_reader(detail::lower_extension(path));
   SurfaceMesh mesh;
   if (reader != nullptr) {
-    const std::string bytes = read_bytes(path);
+    const std::string bytes = detail::read_mesh_file(path);
     mesh = reader({path, bytes}, log);
   } else {
     mesh = read_with_assimp(path, log);

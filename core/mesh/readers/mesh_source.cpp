@@ -1,13 +1,47 @@
 #include "core/mesh/readers/mesh_source.h"
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+
 #include <fmt/format.h>
 
 namespace softreel::detail {
+
+namespace fs = std::filesystem;
 
 Error unusable_file(const std::string& path, const std::string& problem, const std::string& advice) {
   return input_error(
       fmt::format("{}: {}.\n  Accepted: a mesh file (.obj, .ply, .off, .stl, .gltf, .glb, .fbx, .dae, ...). {}.", path,
                   problem, advice));
+}
+
+void require_mesh_file(const std::string& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (!fs::exists(status)) throw unusable_file(path, "there is no such mesh file", "Check the path");
+  if (fs::is_directory(status)) throw unusable_file(path, "this is a folder, not a mesh file", "Name a file in it");
+  if (!fs::is_regular_file(status)) throw unusable_file(path, "this is not a regular file", "Save the mesh to a file");
+  if (fs::file_size(path, ignored) == 0) throw unusable_file(path, "the mesh file is empty", "Export the mesh again");
+}
+
+std::string read_mesh_file(const std::string& path) {
+  require_mesh_file(path);
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes;
+  std::error_code ignored;
+  bytes.resize(fs::file_size(path, ignored));
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!file) throw unusable_file(path, "the mesh file cannot be read", "Check its permissions");
+  return bytes;
+}
+
+std::string lower_extension(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 Error broken_file(const MeshSource& source, const std::string& place, const std::string& problem,

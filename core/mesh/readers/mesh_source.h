@@ -20,6 +20,15 @@ struct MeshSource {
 /// The error of a file that gives no mesh at all, whatever its format.
 Error unusable_file(const std::string& path, const std::string& problem, const std::string& advice);
 
+/// Throws input_error for what is no regular file, or empty.
+void require_mesh_file(const std::string& path);
+
+/// The bytes of a mesh file. Throws input_error as require_mesh_file, and for a file that cannot be read.
+std::string read_mesh_file(const std::string& path);
+
+/// ".obj", in small letters; "" if the path has none.
+std::string lower_extension(const std::string& path);
+
 /// The error of a file that breaks its format. place: ":12" for a line, " (byte 80)" in a binary file, or "".
 Error broken_file(const MeshSource& source, const std::string& place, const std::string& problem,
                   const std::string& accepted, const std::string& advice);

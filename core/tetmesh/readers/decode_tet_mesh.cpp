@@ -1,6 +1,7 @@
 /// The checks that all formats of given tetrahedra share.
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "core/tetmesh/readers/tet_file.h"
 #include "core/tetmesh/tet_mesh_file.h"
@@ -83,6 +84,19 @@ std::size_t drop_unused_nodes(TetMesh& mesh) {
 bool is_tet_mesh_extension(const std::string& extension) {
   return std::any_of(std::begin(kFormats), std::end(kFormats),
                      [&](const Format& format) { return extension == format.extension; });
+}
+
+bool is_tet_mesh_file(const std::string& path) {
+  const std::string extension = detail::lower_extension(path);
+  if (!is_tet_mesh_extension(extension)) return false;
+  constexpr std::string_view kOgre{"\0\x10[MeshSerializer", 17};
+  std::string head(kOgre.size(), ' ');
+  std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head != kOgre;
+}
+
+TetMesh read_tet_mesh(const std::string& path, const Log& log) {
+  return decode_tet_mesh(path, detail::read_mesh_file(path), detail::lower_extension(path), log);
 }
 
 TetMesh decode_tet_mesh(const std::string& name, std::string_view bytes, const std::string& extension, const Log& log) {

@@ -150,6 +150,16 @@ scale = 0.01
 material = "gel"
 tets = 5000
 
+[body.third_by_name]
+mesh = "meshes/c.ply"
+material = "gel"
+error = "0.3%"
+
+[body.fourth_by_name]
+mesh = "meshes/d.ply"
+material = "gel"
+tetrahedra = "meshes/d.msh"
+
 [material.rubber]
 youngs_modulus = 2e5
 poisson_ratio = 0.45

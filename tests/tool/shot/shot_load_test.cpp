@@ -38,7 +38,7 @@ TEST_F(LoadShot, TakesTheOnlyMaterialForABodyThatNamesNone) {
 
 TEST_F(LoadShot, KeepsBodiesInTheOrderOfTheFile) {
   const Shot shot = load(kFullShot);
-  ASSERT_EQ(shot.bodies.size(), 2u);
+  ASSERT_EQ(shot.bodies.size(), 4u);
   EXPECT_EQ(shot.bodies[0].name, "second_by_name");
   EXPECT_EQ(shot.bodies[1].name, "first_by_name");
 }
@@ -57,6 +57,20 @@ TEST_F(LoadShot, ResolvesPathsAgainstTheFileThatSaysThem) {
   EXPECT_EQ(shot.environment_image, "shots/sky.exr");
   EXPECT_EQ(to_string(shot.environment_origin), "shots/deep/s.toml:4:9");
   EXPECT_EQ(load(kFullShot).bodies[1].mesh, "/meshes/a.ply");
+}
+
+TEST_F(LoadShot, TakesTheSizeOfTetrahedraInOneOfFourWays) {
+  const Shot shot = load(kFullShot);
+  EXPECT_EQ(shot.bodies[2].error, (BodyLength{0.003, true}));
+  EXPECT_DOUBLE_EQ(shot.bodies[2].error.in_meters(2), 0.006);
+  EXPECT_EQ(load(body("error = 0.02")).bodies[0].error, (BodyLength{0.02, false}));
+  EXPECT_EQ(shot.bodies[3].tetrahedra, "meshes/d.msh");
+  for (const BodySettings& one : shot.bodies)
+    EXPECT_EQ((one.tets > 0) + (one.edge > 0) + (one.error.value > 0) + !one.tetrahedra.empty(), 1) << one.name;
+  EXPECT_NE(message(body("error = 0.02\ntetrahedra = \"b.msh\"")).find("not both"), std::string::npos);
+  EXPECT_NE(message(body("tets = 500\nerror = 0.02")).find("not both"), std::string::npos);
+  for (const char* wrong : {"\"0.3\"", "\"percent\"", "\"-1%\"", "\"60%\"", "\"nan%\"", "0", "true"})
+    EXPECT_EQ(message(body(std::string("error = ") + wrong)).empty(), std::string(wrong) == "\"0.3\"") << wrong;
 }
 
 TEST_F(LoadShot, TurnsDegreesIntoRadians) {

@@ -22,6 +22,7 @@ TEST_F(ShotRanges, EndWhereTheReferenceSays) {
       {"body.fit", positive, above_zero},
       {"body.scale", positive, above_zero},
       {"body.edge", positive, above_zero},
+      {"body.error", {"1e-300", "1e300", "\"50%\""}, {"0", "-1", "\"50.1%\"", "\"0%\""}},
       {"body.thickness", positive, above_zero},
       {"body.tets", {"1", "500000000"}, {"0", "500000001", "9223372036854775807", "1e19"}},
       {"body.region[0].stiffness", positive, above_zero},

@@ -1,0 +1,96 @@
+#include "tool/stages/loaded_body.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/mesh_repair.h"
+#include "core/mesh/readers/mesh_import.h"
+#include "core/tetmesh/boundary_surface.h"
+#include "core/tetmesh/tet_mesh_file.h"
+#include "core/tetmesh/tet_quality.h"
+#include "tool/stages/at_field.h"
+
+namespace softreel {
+namespace {
+
+PlacementParams placement_params(const BodySettings& body) {
+  PlacementParams params;
+  using Up = PlacementParams::Up;
+  params.up = body.up == UpAxis::X ? Up::X : body.up == UpAxis::Z ? Up::Z : Up::Y;
+  params.fit = body.fit;
+  params.scale = body.scale;
+  params.translate = body.translate;
+  params.rotate_rad = body.rotate_deg * (std::numbers::pi / 180);
+  return params;
+}
+
+StageKey mesh_key(const SurfaceMesh& mesh) {
+  KeyHasher key("mesh 1");
+  key.add(mesh.positions).add(mesh.triangles);
+  for (const Vec2& at : mesh.texture_coordinates) key.add(at.x()).add(at.y());
+  const PolygonList& polygons = mesh.polygons;
+  key.add(polygons.offsets).add(polygons.corner_vertices).add(polygons.corner_textures).add(polygons.polygon_groups);
+  for (const VertexGroup& group : mesh.groups) key.add(group.name).add(group.vertices);
+  return key.key();
+}
+
+/// Reads the surface, and tells what was found and repaired.
+void read_surface(const BodySettings& body, const RunContext& context, LoadedBody& loaded) {
+  loaded.file_mesh = import_mesh(body.mesh, context.log);
+  loaded.facts = describe(check_mesh(loaded.file_mesh));
+  for (std::string& line : repair_mesh(loaded.file_mesh)) loaded.facts.push_back(std::move(line));
+  if (loaded.file_mesh.triangles.empty())
+    throw input_error(
+        fmt::format("{}: no usable triangle is left.\n  Accepted: a surface that encloses a volume.", body.mesh));
+}
+
+/// Tetrahedra in the mesh field are the body; their boundary is its surface, as sound as they are.
+void read_both(const BodySettings& body, const RunContext& context, LoadedBody& loaded) {
+  if (!body.tetrahedra.empty())
+    throw input_error(fmt::format(
+        "{} holds tetrahedra, but tetrahedra = \"{}\" names others.\n  Accepted: a surface as mesh beside tetrahedra, "
+        "or tetrahedra as mesh. Leave one of the two out.",
+        body.mesh, body.tetrahedra));
+  loaded.given = read_tet_mesh(body.mesh, context.log);
+  loaded.file_mesh = boundary_surface(*loaded.given);
+  loaded.facts = describe(check_mesh(loaded.file_mesh));
+}
+
+void add_tet_facts(const TetMesh& mesh, const Threads& threads, std::vector<std::string>& facts) {
+  const TetQuality quality = measure_quality(mesh, threads);
+  facts.push_back(fmt::format("{} given tetrahedra, {} nodes, dihedral angles {:.2f} to {:.2f} degrees",
+                              mesh.tets.size(), mesh.nodes.size(), quality.min_dihedral, quality.max_dihedral));
+}
+
+StageKey given_key(const TetMesh& mesh) {
+  return KeyHasher("given tetrahedra 1").add(mesh.nodes).add(mesh.tets).key();
+}
+
+}  // namespace
+
+LoadedBody load_body(const BodySettings& body, const RunContext& context) {
+  const ScopedStage stage(context.times, "load");
+  const std::string field = fmt::format("body.{}.mesh", body.name);
+  LoadedBody loaded;
+  at_field(body.mesh_origin, field, [&] {
+    is_tet_mesh_file(body.mesh) ? read_both(body, context, loaded) : read_surface(body, context, loaded);
+    loaded.placement = place(loaded.file_mesh, placement_params(body));
+  });
+  if (!body.tetrahedra.empty())
+    loaded.given = at_field(body.origin, fmt::format("body.{}.tetrahedra", body.name),
+                            [&] { return read_tet_mesh(body.tetrahedra, context.log); });
+  loaded.file_key = mesh_key(loaded.file_mesh);
+  loaded.surface = loaded.file_mesh;
+  apply(loaded.placement, loaded.surface);
+  loaded.key = KeyHasher("surface 1").add(loaded.surface.positions).add(loaded.surface.triangles).key();
+  if (!loaded.given) return loaded;
+  add_tet_facts(*loaded.given, context.threads, loaded.facts);
+  loaded.given_key = given_key(*loaded.given);
+  for (Vec3& node : loaded.given->nodes) node = loaded.placement(node);
+  return loaded;
+}
+
+}  // namespace softreel

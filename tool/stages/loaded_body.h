@@ -1,0 +1,32 @@
+/// The first stage of a body: its surface, and tetrahedra made elsewhere, read, checked, repaired and placed.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/mesh/placement.h"
+#include "core/mesh/surface_mesh.h"
+#include "core/tetmesh/tet_mesh.h"
+#include "tool/shot/shot.h"
+#include "tool/stages/key.h"
+#include "tool/stages/run_context.h"
+
+namespace softreel {
+
+/// A body's surface as its file has it and as it stands in the scene.
+struct LoadedBody {
+  SurfaceMesh file_mesh;  ///< repaired triangles, positions in file units
+  SurfaceMesh surface;    ///< the same, placed (m)
+  Placement placement;
+  std::optional<TetMesh> given;    ///< tetrahedra made elsewhere, placed (m)
+  std::vector<std::string> facts;  ///< what check and repair found, one line each
+  StageKey key;                    ///< of surface.positions and surface.triangles
+  StageKey file_key;               ///< of all that the mesh file says, before placement
+  StageKey given_key;              ///< of the given tetrahedra as their file has them; empty if there are none
+};
+
+/// Reads, checks, repairs and places the mesh of a body. Throws input_error.
+LoadedBody load_body(const BodySettings& body, const RunContext& context);
+
+}  // namespace softreel
