@@ -1,0 +1,250 @@
+#include "core/tetmesh/solids.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "core/mesh/disjoint_sets.h"
+#include "core/tetmesh/triangle_tree.h"
+#include "core/tetmesh/winding_number.h"
+
+namespace softreel {
+namespace {
+
+/// Open parts nearer than this share of the larger diagonal may close each other.
+constexpr double kOpenReach = 0.02;
+
+/// Points of a part that are looked at to tell whether it lies inside another.
+constexpr std::size_t kSamples = 5;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+using Corners = std::array<Vec3, 3>;
+
+double orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return (b - a).cross(c - a).dot(d - a);
+}
+
+/// Whether the segment p-q passes through the inside of a triangle; touching does not count.
+bool crosses(const Vec3& p, const Vec3& q, const Corners& t) {
+  const double above = orientation(t[0], t[1], t[2], p), below = orientation(t[0], t[1], t[2], q);
+  if (!(above * below < 0)) return false;
+  const double a = orientation(p, q, t[0], t[1]), b = orientation(p, q, t[1], t[2]), c = orientation(p, q, t[2], t[0]);
+  return (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
+}
+
+bool cross_each_other(const Corners& s, const Corners& t) {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (crosses(s[k], s[(k + 1) % 3], t) || crosses(t[k], t[(k + 1) % 3], s)) return true;
+  return false;
+}
+
+bool overlap(const Vec3& min, const Vec3& max, const Vec3& other_min, const Vec3& other_max, double reach = 0) {
+  return ((min.array() <= other_max.array() + reach) && (other_min.array() <= max.array() + reach)).all();
+}
+
+bool is_within(const Bounds& inner, const Bounds& outer) {
+  return ((inner.min.array() >= outer.min.array()) && (inner.max.array() <= outer.max.array())).all();
+}
+
+/// Whether any triangle of one tree crosses one of another.
+bool any_cross(const TriangleTree& first, const TriangleTree& second) {
+  std::vector<std::array<Index, 2>> open{{0, 0}};
+  while (!open.empty()) {
+    const auto [i, j] = open.back();
+    open.pop_back();
+    const TriangleTree::Node &a = first.nodes()[at(i)], &b = second.nodes()[at(j)];
+    if (!overlap(a.min, a.max, b.min, b.max)) continue;
+    if (a.is_leaf() && b.is_leaf()) {
+      for (Index s = a.begin; s < a.end; ++s)
+        for (Index t = b.begin; t < b.end; ++t)
+          if (cross_each_other(first.corners()[at(s)], second.corners()[at(t)])) return true;
+    } else if (b.is_leaf() || (!a.is_leaf() && a.end - a.begin >= b.end - b.begin)) {
+      open.push_back({i + 1, j});
+      open.push_back({a.right, j});
+    } else {
+      open.push_back({i, j + 1});
+      open.push_back({i, b.right});
+    }
+  }
+  return false;
+}
+
+/// The boxes of parts in a tree, each as a triangle that spans it.
+class BoxTree {
+ public:
+  explicit BoxTree(const std::vector<SurfacePart>& parts) : tree_(corners_of(parts), triangles_of(parts.size())) {}
+
+  /// Calls visit(part) for each box within `reach` of one, along every axis.
+  template <typename Visit>
+  void visit_near(const Bounds& box, double reach, const Visit& visit) const {
+    std::vector<Index> open{0};
+    while (!open.empty()) {
+      const Index n = open.back();
+      open.pop_back();
+      const TriangleTree::Node& node = tree_.nodes()[at(n)];
+      if (!overlap(node.min, node.max, box.min, box.max, reach)) continue;
+      if (!node.is_leaf()) {
+        open.push_back(n + 1);
+        open.push_back(node.right);
+        continue;
+      }
+      for (Index i = node.begin; i < node.end; ++i) visit(tree_.order()[at(i)]);
+    }
+  }
+
+ private:
+  static std::vector<Vec3> corners_of(const std::vector<SurfacePart>& parts) {
+    std::vector<Vec3> corners;
+    for (const SurfacePart& part : parts) corners.insert(corners.end(), {part.box.min, part.box.max});
+    return corners;
+  }
+  static std::vector<Triangle> triangles_of(std::size_t count) {
+    std::vector<Triangle> triangles;
+    for (Index i = 0; i < static_cast<Index>(count); ++i) triangles.push_back({2 * i, 2 * i + 1, 2 * i});
+    return triangles;
+  }
+
+  TriangleTree tree_;
+};
+
+/// The parts with what is asked of them made when it is first asked.
+class Joining {
+ public:
+  Joining(const SurfaceMesh& surface, const SurfaceParts& parts)
+      : surface_(surface),
+        parts_(parts),
+        boxes_(parts.parts),
+        triangles_(parts.parts.size()),
+        trees_(parts.parts.size()),
+        windings_(parts.parts.size()),
+        sets_(parts.parts.size()) {
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+      triangles_[at(parts.triangle_parts[t])].push_back(surface.triangles[t]);
+  }
+
+  std::vector<Index> run() {
+    join_near_and_crossing();
+    for (Index p = 0; p < count(); ++p)
+      if (const Index around = innermost_around(p); around >= 0) sets_.join(p, around);
+    std::vector<Index> number(parts_.parts.size(), -1), solids;
+    Index numbered = 0;
+    for (Index p = 0; p < count(); ++p) {
+      Index& solid = number[at(sets_.root(p))];
+      if (solid < 0) solid = numbered++;
+      solids.push_back(solid);
+    }
+    return solids;
+  }
+
+ private:
+  Index count() const { return static_cast<Index>(parts_.parts.size()); }
+  const Bounds& box(Index p) const { return parts_.parts[at(p)].box; }
+  bool is_open(Index p) const { return parts_.parts[at(p)].open; }
+
+  void join_near_and_crossing() {
+    double largest = 0;
+    bool any_open = false;
+    for (const SurfacePart& part : parts_.parts) {
+      largest = std::max(largest, part.box.diagonal());
+      any_open = any_open || part.open;
+    }
+    for (Index p = 0; p < count(); ++p)
+      boxes_.visit_near(box(p), any_open ? kOpenReach * largest : 0, [&](Index q) {
+        if (q > p && sets_.root(p) != sets_.root(q) && are_joined(p, q)) sets_.join(p, q);
+      });
+  }
+
+  bool are_joined(Index p, Index q) {
+    const double reach = kOpenReach * std::max(box(p).diagonal(), box(q).diagonal());
+    if (is_open(p) || is_open(q)) return overlap(box(p).min, box(p).max, box(q).min, box(q).max, reach);
+    return overlap(box(p).min, box(p).max, box(q).min, box(q).max) && any_cross(tree(p), tree(q));
+  }
+
+  /// Of the parts around a closed one the smallest, if that one lies in their material; -1 if it lies outside.
+  Index innermost_around(Index p) {
+    if (is_open(p)) return -1;
+    double winding = 0;
+    Index innermost = -1;
+    boxes_.visit_near(box(p), 0, [&](Index q) {
+      if (q == p || !is_within(box(p), box(q))) return;
+      const double turns = turns_around(p, q);
+      if (std::abs(turns) < 0.5) return;
+      winding += turns;
+      if (innermost < 0 || std::abs(parts_.parts[at(q)].volume) < std::abs(parts_.parts[at(innermost)].volume))
+        innermost = q;
+    });
+    return std::abs(winding) > 0.5 ? innermost : -1;
+  }
+
+  /// How often part q goes round part p: the middle one of some points of p.
+  double turns_around(Index p, Index q) {
+    const std::vector<Triangle>& triangles = triangles_[at(p)];
+    std::vector<double> turns;
+    for (std::size_t k = 0; k < kSamples; ++k) {
+      const Triangle& t = triangles[k * triangles.size() / kSamples];
+      const Vec3 middle =
+          (surface_.positions[at(t[0])] + surface_.positions[at(t[1])] + surface_.positions[at(t[2])]) / 3;
+      turns.push_back(winding(q)(middle));
+    }
+    std::nth_element(turns.begin(), turns.begin() + kSamples / 2, turns.end());
+    return std::round(turns[kSamples / 2]);
+  }
+
+  const TriangleTree& tree(Index p) {
+    if (!trees_[at(p)]) trees_[at(p)] = std::make_unique<TriangleTree>(surface_.positions, triangles_[at(p)]);
+    return *trees_[at(p)];
+  }
+  const WindingNumber& winding(Index p) {
+    if (!windings_[at(p)]) windings_[at(p)] = std::make_unique<WindingNumber>(surface_.positions, triangles_[at(p)]);
+    return *windings_[at(p)];
+  }
+
+  const SurfaceMesh& surface_;
+  const SurfaceParts& parts_;
+  BoxTree boxes_;
+  std::vector<std::vector<Triangle>> triangles_;  ///< per part
+  std::vector<std::unique_ptr<TriangleTree>> trees_;
+  std::vector<std::unique_ptr<WindingNumber>> windings_;
+  DisjointSets sets_;
+};
+
+}  // namespace
+
+std::vector<Index> find_solids(const SurfaceMesh& surface, const SurfaceParts& parts) {
+  if (parts.parts.size() <= 1) return std::vector<Index>(parts.parts.size(), 0);
+  return Joining(surface, parts).run();
+}
+
+std::vector<Solid> split_solids(const SurfaceMesh& surface, const SurfaceParts& parts,
+                                const std::vector<Index>& solids) {
+  const Index count = solids.empty() ? 0 : *std::max_element(solids.begin(), solids.end()) + 1;
+  std::vector<Solid> split(at(count));
+  std::vector<Index> part_numbers;  // in its solid
+  for (std::size_t p = 0; p < parts.parts.size(); ++p) {
+    std::vector<SurfacePart>& own = split[at(solids[p])].parts.parts;
+    part_numbers.push_back(static_cast<Index>(own.size()));
+    own.push_back(parts.parts[p]);
+  }
+  std::vector<Index> vertex_numbers(surface.positions.size(), -1);  // parts share no vertices
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto part = at(parts.triangle_parts[t]);
+    Solid& solid = split[at(solids[part])];
+    Triangle triangle = surface.triangles[t];
+    for (Index& v : triangle) {
+      Index& number = vertex_numbers[at(v)];
+      if (number < 0) {
+        number = static_cast<Index>(solid.surface.positions.size());
+        solid.surface.positions.push_back(surface.positions[at(v)]);
+      }
+      v = number;
+    }
+    solid.surface.triangles.push_back(triangle);
+    solid.parts.triangle_parts.push_back(part_numbers[part]);
+  }
+  return split;
+}
+
+}  // namespace softreel
