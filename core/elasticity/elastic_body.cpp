@@ -90,6 +90,7 @@ ElasticBody make_elastic_body(const TetMesh& mesh, const std::vector<ElementMate
   body.laws.reserve(mesh.tets.size());
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
     body.shapes.push_back(find_element_shape(nodes_of(mesh.tets[e], mesh.nodes)));
+    body.shapes.back().volume *= mesh.fill_of(e);  // of its material: what gives stress and energy
     body.laws.push_back({materials[e].lame_lambda(), materials[e].lame_mu(), dilatation == Dilatation::Capped});
   }
   body.batches = make_element_batches(body.tets, body.shapes, body.laws);

@@ -9,7 +9,7 @@ NodalMasses lump_masses(const TetMesh& mesh, const std::vector<ElementMaterial>&
     const double volume =
         tet_volume(mesh.nodes[static_cast<std::size_t>(tet[0])], mesh.nodes[static_cast<std::size_t>(tet[1])],
                    mesh.nodes[static_cast<std::size_t>(tet[2])], mesh.nodes[static_cast<std::size_t>(tet[3])]);
-    const double share = 0.25 * materials[e].density * volume;
+    const double share = 0.25 * materials[e].density * mesh.fill_of(e) * volume;
     for (const Index node : tet) {
       masses.mass[static_cast<std::size_t>(node)] += share;
       masses.damping[static_cast<std::size_t>(node)] += share * materials[e].damping_mass;

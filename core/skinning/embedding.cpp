@@ -163,6 +163,11 @@ class Embedder {
         boundary_(make_boundary(mesh)) {}
 
   void embed(std::size_t point, Index& element, Weights& weights) const {
+    if (!mesh_.carriers.empty() && mesh_.carriers[point] >= 0) {
+      element = mesh_.carriers[point];
+      weights = barycentric(corners_of(mesh_, element), points_[point]);
+      if (is_bounded(weights)) return;
+    }
     if (find_inside(point, element, weights)) return;
     const TriangleTree::Nearest nearest =
         nearest_facing(boundary_, points_[point], normals_[point], kFacingReach * cell_);
@@ -207,6 +212,7 @@ Embedding embed_points(const std::vector<Vec3>& points, const std::vector<Vec3>&
                        const Threads& threads) {
   CHECK(points.size() == normals.size());
   CHECK(!mesh.tets.empty());
+  if (!mesh.carriers.empty()) CHECK(mesh.carriers.size() == points.size());
   Embedding embedding;
   embedding.elements.resize(points.size());
   embedding.weights.resize(points.size());

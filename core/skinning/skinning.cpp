@@ -36,7 +36,7 @@ NodeElements elements_of_nodes(const TetMesh& mesh) {
   return list;
 }
 
-/// Deformation gradients, averaged by rest volume over the elements of each node; only of nodes that are wanted.
+/// Deformation gradients, averaged by volume of material over the elements of each node; only of nodes that are wanted.
 std::vector<Mat3> nodal_gradients(const TetMesh& mesh, const std::vector<Vec3>& node_positions,
                                   const std::vector<bool>& wanted, const Threads& threads) {
   const NodeElements list = elements_of_nodes(mesh);
@@ -49,7 +49,7 @@ std::vector<Mat3> nodal_gradients(const TetMesh& mesh, const std::vector<Vec3>& 
       for (Index i = list.offsets[node]; i < list.offsets[node + 1]; ++i) {
         const Tet& tet = mesh.tets[at(list.elements[at(i)])];
         const Mat3 rest = edges_of(tet, mesh.nodes);
-        const double weight = rest.determinant();
+        const double weight = mesh.fill_of(at(list.elements[at(i)])) * rest.determinant();
         sum += weight * (edges_of(tet, node_positions) * rest.inverse());
         volume += weight;
       }

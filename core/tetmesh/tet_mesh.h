@@ -15,9 +15,16 @@ struct LatticeFrame {
 
 /// A tetrahedral mesh. det[X1-X0, X2-X0, X3-X0] > 0 for every element.
 struct TetMesh {
-  std::vector<Vec3> nodes;  ///< rest positions X, nodes x 3, m
-  std::vector<Tet> tets;    ///< elements x 4
-  LatticeFrame lattice;     ///< nested lattices of the multigrid hierarchy start from this one
+  std::vector<Vec3> nodes;        ///< rest positions X, nodes x 3, m
+  std::vector<Tet> tets;          ///< elements x 4
+  LatticeFrame lattice;           ///< nested lattices of the multigrid hierarchy start from this one
+  std::vector<double> fill = {};  ///< per element: share of its volume that is material, above 0, up to 1; empty: all
+  /// Per vertex of the surface it was made from: the element that carries it, -1: the one found by place; empty: all
+  /// are found by place. Where elements overlap, place alone does not say which part a point belongs to.
+  std::vector<Index> carriers = {};
+
+  /// Share of element e that is material.
+  double fill_of(std::size_t e) const { return fill.empty() ? 1.0 : fill[e]; }
 };
 
 /// Signed volume of a tetrahedron, m^3; positive for the project's orientation.

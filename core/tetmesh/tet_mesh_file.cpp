@@ -29,16 +29,17 @@ void append_raw(Bytes& bytes, const T& value) {
 constexpr std::uint8_t kVtkTetra = 10;
 constexpr int kGmshTetra = 4;
 
-/// Sizes in bytes of the four appended blocks: points, connectivity, offsets, types.
-std::array<std::uint64_t, 4> vtu_block_sizes(const TetMesh& mesh) {
+/// Sizes in bytes of the five appended blocks: points, connectivity, offsets, types, fills (there may be none).
+std::array<std::uint64_t, 5> vtu_block_sizes(const TetMesh& mesh) {
   const std::uint64_t nodes = mesh.nodes.size(), tets = mesh.tets.size();
-  return {nodes * 3 * sizeof(double), tets * 4 * sizeof(Index), tets * sizeof(std::int64_t), tets};
+  return {nodes * 3 * sizeof(double), tets * 4 * sizeof(Index), tets * sizeof(std::int64_t), tets,
+          mesh.fill.size() * sizeof(double)};
 }
 
 void print_vtu_header(Bytes& bytes, const TetMesh& mesh) {
   const auto sizes = vtu_block_sizes(mesh);
-  std::array<std::uint64_t, 4> offsets{};
-  for (std::size_t k = 1; k < 4; ++k) offsets[k] = offsets[k - 1] + sizes[k - 1] + sizeof(std::uint64_t);
+  std::array<std::uint64_t, 5> offsets{};
+  for (std::size_t k = 1; k < 5; ++k) offsets[k] = offsets[k - 1] + sizes[k - 1] + sizeof(std::uint64_t);
   print(bytes,
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
@@ -51,13 +52,18 @@ void print_vtu_header(Bytes& bytes, const TetMesh& mesh) {
       "<DataArray type=\"Int64\" Name=\"offsets\" format=\"appended\" offset=\"{}\"/>\n"
       "<DataArray type=\"UInt8\" Name=\"types\" format=\"appended\" offset=\"{}\"/>\n</Cells>\n",
       offsets[0], offsets[1], offsets[2], offsets[3]);
+  if (!mesh.fill.empty())
+    print(bytes,
+          "<CellData Scalars=\"fill\">\n<DataArray type=\"Float64\" Name=\"fill\" format=\"appended\" "
+          "offset=\"{}\"/>\n</CellData>\n",
+          offsets[4]);
   print(bytes, "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
 }
 
 Bytes encode_vtu(const TetMesh& mesh) {
   Bytes bytes;
   const auto sizes = vtu_block_sizes(mesh);
-  bytes.reserve(2048 + sizes[0] + sizes[1] + sizes[2] + sizes[3]);
+  bytes.reserve(2048 + sizes[0] + sizes[1] + sizes[2] + sizes[3] + sizes[4]);
   print_vtu_header(bytes, mesh);
   append_raw(bytes, sizes[0]);
   for (const Vec3& p : mesh.nodes)
@@ -68,6 +74,10 @@ Bytes encode_vtu(const TetMesh& mesh) {
   for (std::size_t e = 1; e <= mesh.tets.size(); ++e) append_raw(bytes, static_cast<std::int64_t>(4 * e));
   append_raw(bytes, sizes[3]);
   bytes.insert(bytes.end(), mesh.tets.size(), kVtkTetra);
+  if (!mesh.fill.empty()) {
+    append_raw(bytes, sizes[4]);
+    for (const double fill : mesh.fill) append_raw(bytes, fill);
+  }
   print(bytes, "\n</AppendedData>\n</VTKFile>\n");
   return bytes;
 }

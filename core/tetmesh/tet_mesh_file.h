@@ -14,7 +14,8 @@ namespace softreel {
 /// The bytes of a file that holds the mesh; all numbers exact (text is the shortest that reads back the same).
 ///
 /// extension: ".vtu" (VTK unstructured grid, XML with appended raw binary), ".msh" (Gmsh 2.2 text, one volume) or
-/// ".mesh" (Medit text, with the boundary triangles). Throws input_error for any other. Nodes and elements keep their
+/// ".mesh" (Medit text, with the boundary triangles). The fill of an embedded mesh goes to .vtu only, as cell data
+/// "fill". Throws input_error for any other. Nodes and elements keep their
 /// order.
 std::vector<std::uint8_t> encode_tet_mesh(const TetMesh& mesh, const std::string& extension);
 

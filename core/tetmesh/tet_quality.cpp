@@ -58,7 +58,7 @@ TetQuality measure_quality(const TetMesh& mesh, const Threads& threads) {
     if (!(angles[e].min >= angles[least].min)) least = e;
     if (!(angles[e].max <= angles[most].max)) most = e;
     if (!(volumes[e] >= volumes[smallest])) smallest = e;
-    quality.volume += volumes[e];
+    quality.volume += mesh.fill_of(e) * volumes[e];
   }
   quality.min_dihedral = degrees(angles[least].min);
   quality.min_dihedral_tet = static_cast<Index>(least);

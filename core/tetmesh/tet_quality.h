@@ -11,7 +11,7 @@ struct TetQuality {
   double min_dihedral = 0, max_dihedral = 0;  ///< degrees
   double first_percentile_dihedral = 0;       ///< degrees: 1 % of the elements have a smaller least angle
   Index min_dihedral_tet = -1, max_dihedral_tet = -1;
-  double volume = 0, min_volume = 0;  ///< m^3, whole and smallest element
+  double volume = 0, min_volume = 0;  ///< m^3: of the material of all; of the smallest element, filled or not
   Index min_volume_tet = -1;
 };
 

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
+#include "core/tetmesh/embedded_lattice.h"
 #include "core/tetmesh/error_budget.h"
 #include "core/tetmesh/graded_stuffing.h"
 #include "core/tetmesh/mesh_pieces.h"
@@ -23,7 +24,13 @@ namespace {
 constexpr double kMaxTets = 1.5e8;
 
 /// Tetrahedra of a lattice: 12 per cubic cell inside, and so many per square cell of the surface.
-constexpr double kTetsPerCell = 12.0, kTetsPerSquare = 1.6;
+constexpr double kTetsPerCell = 12.0, kTetsPerSquare = 1.6, kEmbeddedTetsPerSquare = 5.0;
+
+/// Shift of the lattice in embedded mode, edges: the faces of boxes are not to lie in those of tetrahedra.
+const Vec3 kOffGrid(0.1237, 0.3711, 0.2339);
+
+/// The dihedral angles of the lattice's tetrahedra are 60 and 90 degrees, but for round-off.
+constexpr double kAngleRoundOff = 0.01;
 
 /// How far the number of elements may be from the wanted one.
 constexpr double kCountTolerance = 0.05;
@@ -37,15 +44,20 @@ struct Job {
   const Threads& threads;
   const Log& log;
   StageTimes& times;
+  TetMode mode;
+  const std::vector<CarriedPoint>& carried;  // embedded mode: the vertices of the surface as it was given
+
+  double tets_per_square() const { return mode == TetMode::Embedded ? kEmbeddedTetsPerSquare : kTetsPerSquare; }
 };
 
-double predicted_tets(double volume, double area, double edge) {
-  return kTetsPerCell * volume / (edge * edge * edge) + kTetsPerSquare * area / (edge * edge);
+double predicted_tets(const Job& job, double edge) {
+  return kTetsPerCell * job.parts.volume() / (edge * edge * edge) +
+         job.tets_per_square() * job.parts.area() / (edge * edge);
 }
 
 void require_size(const Job& job, double edge) {
   const double reach = job.box.size().maxCoeff() / edge;
-  const double tets = predicted_tets(job.parts.volume(), job.parts.area(), edge);
+  const double tets = predicted_tets(job, edge);
   if (reach < 0.45 * kMaxLatticeCoordinate && tets < kMaxTets) return;
   throw input_error(fmt::format(
       "body '{}': edge = {:.4g} m makes about {:.3g} tetrahedra in a box {:.4g} edges long. Accepted: at most {:.2g} "
@@ -53,9 +65,25 @@ void require_size(const Job& job, double edge) {
       job.name, edge, tets, reach, kMaxTets, 0.45 * kMaxLatticeCoordinate));
 }
 
-/// Stuffs, mends and cleans; no promises checked yet.
+/// Covers the surface with whole lattice tetrahedra.
+StuffedMesh cover_surface(const Job& job, double edge, const Vec3& shift) {
+  const ScopedStage stage(job.times, "tetrahedralize/lattice");
+  const LatticeFrame frame{job.box.center() + edge * (shift + kOffGrid), edge};
+  EmbeddedLattice cover = cover_with_lattice(job.surface, job.parts, frame, job.carried, job.threads);
+  job.log.info(fmt::format(
+      "body '{}': embedded in {} whole lattice tetrahedra, {} of them cut by the surface, {} of them copies "
+      "where parts of the body lie in one",
+      job.name, cover.mesh.tets.size(), cover.cut_cells, cover.copies));
+  if (cover.branches > 0)
+    job.log.info(fmt::format("body '{}': at {} of the copies limbs side by side in one lattice tetrahedron join",
+                             job.name, cover.branches));
+  return {std::move(cover.mesh), {}, {}};
+}
+
+/// Stuffs, mends and cleans, or covers; no promises checked yet.
 StuffedMesh fill_surface(const Job& job, double edge, const Vec3& shift = Vec3::Zero()) {
   require_size(job, edge);
+  if (job.mode == TetMode::Embedded) return cover_surface(job, edge, shift);
   const LatticeFrame frame{job.box.center() + edge * shift, edge};
   SurfaceDistance distance = [&] {
     const ScopedStage stage(job.times, "tetrahedralize/distance");
@@ -106,11 +134,14 @@ void require_quality(const Job& job, const TetMesh& mesh, const AngleBounds& bou
 }
 
 /// The edge that gives `tets` by the prediction; it falls monotonously with the edge, so halving finds it.
-double edge_for_tets(double volume, double area, double tets) {
-  double low = 0, high = std::sqrt((kTetsPerSquare * area + kTetsPerCell * std::pow(volume, 2.0 / 3.0)) / tets) * 8.0;
+double edge_for_tets(const Job& job, double tets) {
+  double low = 0, high = std::sqrt((job.tets_per_square() * job.parts.area() +
+                                    kTetsPerCell * std::pow(job.parts.volume(), 2.0 / 3.0)) /
+                                   tets) *
+                         8.0;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (predicted_tets(volume, area, middle) > tets ? low : high) = middle;
+    (predicted_tets(job, middle) > tets ? low : high) = middle;
   }
   return high;
 }
@@ -140,7 +171,7 @@ Vec3 lattice_shift(int step) {
 
 /// Predicts an edge, fills, and corrects it by the cube root of the count's error until that is within 5 %.
 StuffedMesh fill_with_count(const Job& job, double wanted) {
-  double edge = edge_for_tets(job.parts.volume(), job.parts.area(), wanted);
+  double edge = edge_for_tets(job, wanted);
   StuffedMesh best;
   WaitingLog best_lines;
   double best_error = 1e300;
@@ -148,8 +179,9 @@ StuffedMesh fill_with_count(const Job& job, double wanted) {
   for (int step = 0; step < kSteps; ++step) {
     WaitingLog lines;
     const Log log = lines.sink();
-    StuffedMesh stuffed = fill_surface({job.surface, job.parts, job.box, job.name, job.threads, log, job.times}, edge,
-                                       lattice_shift(std::max(0, step - 1)));
+    StuffedMesh stuffed =
+        fill_surface({job.surface, job.parts, job.box, job.name, job.threads, log, job.times, job.mode, job.carried},
+                     edge, lattice_shift(std::max(0, step - 1)));
     const auto count = static_cast<double>(stuffed.mesh.tets.size());
     const double error = std::abs(count / wanted - 1.0);
     if (error < best_error) {
@@ -200,6 +232,11 @@ void require_params(const SurfaceMesh& surface, const TetrahedralizeParams& para
         fmt::format("body '{}': edge = {} m, tets = {}, error = {} m: exactly one of the sizes must be set. Accepted: "
                     "one above 0. Give tets (for example 20000) and leave the others out.",
                     name, params.edge, params.tets, params.error));
+  if (params.error > 0 && params.mode == TetMode::Embedded)
+    throw input_error(
+        fmt::format("body '{}': error = {} m with mode = \"embedded\": whole lattice tetrahedra do not follow the "
+                    "surface at all. Accepted: tets or edge with embedded, error with conforming. Set tets instead.",
+                    name, params.error));
   if (surface.triangles.empty())
     throw input_error(
         fmt::format("body '{}': its surface has no triangles, so there is nothing to fill. Accepted: a "
@@ -220,8 +257,9 @@ void require_inside(const Job& job) {
       job.name, part.name, center[0], center[1], center[2]));
 }
 
-/// Leaves out the vertices that no triangle uses: what looks at vertices is not to see them.
-void drop_unused_vertices(SurfaceMesh& mesh) {
+/// Leaves out the vertices that no triangle uses: what looks at vertices is not to see them. Returns the new number of
+/// each vertex, -1 for those left out.
+std::vector<Index> drop_unused_vertices(SurfaceMesh& mesh) {
   std::vector<Index> number(mesh.positions.size(), -1);
   for (const Triangle& triangle : mesh.triangles)
     for (const Index v : triangle) number[static_cast<std::size_t>(v)] = 0;
@@ -238,21 +276,25 @@ void drop_unused_vertices(SurfaceMesh& mesh) {
     std::erase(group.vertices, -1);
   }
   mesh.positions = std::move(used);
+  return number;
 }
 
 /// What is filled: the surface's used vertices, joined ones in one place, and its open parts thickened.
-SurfaceMesh prepare(const SurfaceMesh& surface, double thickness, const std::string& name, const Log& log) {
+/// carried: gets the vertices of `surface` with their numbers in the result, -1 where it has sheets instead.
+SurfaceMesh prepare(const SurfaceMesh& surface, double thickness, const std::string& name, const Log& log,
+                    std::vector<CarriedPoint>& carried) {
   SurfaceMesh prepared;
   prepared.positions = surface.positions;
   prepared.triangles = surface.triangles;
   prepared.groups = surface.groups;
   for (std::size_t v = 0; v < surface.joined.size(); ++v)
     prepared.positions[v] = surface.positions[static_cast<std::size_t>(surface.joined[v])];
-  if (thickness > 0)
-    if (const std::int64_t open = thicken_sheets(prepared, find_parts(prepared), thickness); open > 0)
-      log.info(
-          fmt::format("body '{}': {} triangles of open parts became sheets {:.4g} m thick", name, open, thickness));
-  drop_unused_vertices(prepared);
+  for (const Vec3& position : prepared.positions) carried.push_back({position, -1});
+  const std::int64_t open = thickness > 0 ? thicken_sheets(prepared, find_parts(prepared), thickness) : 0;
+  if (open > 0)
+    log.info(fmt::format("body '{}': {} triangles of open parts became sheets {:.4g} m thick", name, open, thickness));
+  const std::vector<Index> number = drop_unused_vertices(prepared);
+  for (std::size_t v = 0; v < carried.size() && open == 0; ++v) carried[v].vertex = number[v];
   return prepared;
 }
 
@@ -279,10 +321,11 @@ void require_volume(const Job& job) {
 TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name,
                        const Threads& threads, const Log& log, StageTimes& times) {
   require_params(surface, params, name);
-  const SurfaceMesh prepared = prepare(surface, params.thickness, name, log);
+  std::vector<CarriedPoint> carried;
+  const SurfaceMesh prepared = prepare(surface, params.thickness, name, log, carried);
   const SurfaceParts parts = find_parts(prepared);
   const Bounds box = used_bounds(prepared);
-  const Job job{prepared, parts, box, name, threads, log, times};
+  const Job job{prepared, parts, box, name, threads, log, times, params.mode, carried};
   require_volume(job);
   require_inside(job);
   StuffedMesh stuffed = params.error > 0  ? fill_with_error(job, params.error)
@@ -293,6 +336,10 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
         fmt::format("body '{}': its surface encloses no volume that a lattice with edge {:.4g} m can fill. "
                     "Accepted: a surface that encloses a volume. Close or thicken it, or use a smaller edge.",
                     name, stuffed.mesh.lattice.spacing));
+  if (params.mode == TetMode::Embedded) {
+    require_quality(job, stuffed.mesh, {60 - kAngleRoundOff, 90 + kAngleRoundOff});
+    return std::move(stuffed.mesh);
+  }
   if (params.error == 0) {
     const ScopedStage stage(times, "tetrahedralize/fit");
     fit_boundary(stuffed, prepared, {}, threads);

@@ -12,12 +12,19 @@
 
 namespace softreel {
 
+/// How tetrahedra lie to the surface.
+enum class TetMode {
+  Conforming,  ///< their boundary follows it
+  Embedded     ///< whole lattice tetrahedra that cover it, weighted by their fill (embedded_lattice.h)
+};
+
 /// How fine the tetrahedra are; exactly one of the sizes is set, the others are 0.
 struct TetrahedralizeParams {
   double edge = 0;        ///< long edge of the lattice, m
   std::int64_t tets = 0;  ///< wanted number of tetrahedra, met within 5 %
   double error = 0;       ///< wanted two-way distance to the surface, m: graded, see error_budget.h; no lattice
   double thickness = 0;   ///< of the open parts of the surface, m; 0: they count as closed where they nearly are
+  TetMode mode = TetMode::Conforming;
 };
 
 /// Fills a closed surface with tetrahedra by isosurface stuffing of a BCC lattice (Labelle and Shewchuk 2007).
@@ -26,6 +33,9 @@ struct TetrahedralizeParams {
 /// piece is connected through faces. `name` (the body's) stands in messages. Throws input_error if no volume can be
 /// made, or if a part is too thin for the lattice; repairs are said in `log`, one line each. Stage times:
 /// "tetrahedralize/...".
+///
+/// Embedded mode covers the surface instead: dihedral angles of 60 and 90 degrees; nothing is too thin for it; the mesh
+/// has the fill of each element and the carrier of each vertex of `surface`. Not with an error.
 TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name,
                        const Threads& threads, const Log& log, StageTimes& times);
 

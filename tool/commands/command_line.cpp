@@ -146,6 +146,11 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
                    "distance to the surface to keep to: in the mesh's unit, or as 0.3% of its box's diagonal; graded")
       ->excludes(edge)
       ->excludes(count);
+  tets->add_option(
+          "--mode", options.mode,
+          "conforming: the boundary follows the surface; embedded: whole lattice tetrahedra, weighted by their "
+          "fill [conforming]")
+      ->check(CLI::IsMember({"conforming", "embedded"}));
   tets->add_option("--thickness", options.thickness, "make open sheets this thick, in the mesh's unit after fit")
       ->check(CLI::PositiveNumber);
   tets->add_option("--fit", options.fit, "scale the mesh to this height first, m")->check(CLI::PositiveNumber);

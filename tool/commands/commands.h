@@ -74,7 +74,7 @@ struct InspectOptions {
 int run_inspect(const InspectOptions& options);
 
 struct TetrahedralizeOptions {
-  std::string mesh, output, error;
+  std::string mesh, output, error, mode = "conforming";
   double edge = 0, fit = 0, thickness = 0;
   long tets = 0;
   int threads = 0;

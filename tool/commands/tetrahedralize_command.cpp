@@ -10,6 +10,7 @@
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/placement.h"
 #include "core/mesh/readers/mesh_import.h"
+#include "core/tetmesh/embedded_lattice.h"
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/tetrahedralize.h"
@@ -50,19 +51,29 @@ double parse_error_budget(const std::string& text, double diagonal) {
 
 std::string to_json(const TetrahedralizeOptions& options, const Result& result) {
   const double diagonal = used_bounds(result.surface).diagonal();
-  const nlohmann::ordered_json json = {{"mesh", options.mesh},
-                                       {"output", options.output},
-                                       {"tets", result.mesh.tets.size()},
-                                       {"nodes", result.mesh.nodes.size()},
-                                       {"edge", result.mesh.lattice.spacing},
-                                       {"volume", result.quality.volume},
-                                       {"min_dihedral_deg", result.quality.min_dihedral},
-                                       {"first_percentile_dihedral_deg", result.quality.first_percentile_dihedral},
-                                       {"max_dihedral_deg", result.quality.max_dihedral},
-                                       {"distance", result.deviation.two_way()},
-                                       {"distance_share_of_diagonal", result.deviation.two_way() / diagonal},
-                                       {"seconds", result.seconds}};
+  nlohmann::ordered_json json = {{"mesh", options.mesh},
+                                 {"output", options.output},
+                                 {"tets", result.mesh.tets.size()},
+                                 {"nodes", result.mesh.nodes.size()},
+                                 {"edge", result.mesh.lattice.spacing},
+                                 {"volume", result.quality.volume},
+                                 {"min_dihedral_deg", result.quality.min_dihedral},
+                                 {"first_percentile_dihedral_deg", result.quality.first_percentile_dihedral},
+                                 {"max_dihedral_deg", result.quality.max_dihedral},
+                                 {"distance", result.deviation.two_way()},
+                                 {"distance_share_of_diagonal", result.deviation.two_way() / diagonal},
+                                 {"seconds", result.seconds}};
+  if (!result.mesh.fill.empty()) {
+    const EmbeddedFacts facts = describe_embedded(result.mesh);
+    json["filled_share"] = result.quality.volume / facts.cell_volume;
+    json["cut_cells"] = facts.cut_cells;
+    json["copies"] = facts.copies;
+  }
   return json.dump(1);
+}
+
+void print_time(const Result& result) {
+  std::printf("  time: %s\n", format_duration(result.seconds).c_str());
 }
 
 void print_text(const TetrahedralizeOptions& options, const Result& result) {
@@ -73,9 +84,15 @@ void print_text(const TetrahedralizeOptions& options, const Result& result) {
               quality.volume);
   std::printf("  dihedral angles: min %.2f, first percentile %.2f, max %.2f degrees\n", quality.min_dihedral,
               quality.first_percentile_dihedral, quality.max_dihedral);
+  if (!result.mesh.fill.empty()) {
+    const EmbeddedFacts facts = describe_embedded(result.mesh);
+    std::printf("  embedded: filled to %.1f %%, %d cut cells, %d copies of cells\n",
+                100 * quality.volume / facts.cell_volume, facts.cut_cells, facts.copies);
+    return print_time(result);
+  }
   std::printf("  distance to the surface: at most %.4g (%.3f %% of the box diagonal)\n", result.deviation.two_way(),
               100 * result.deviation.two_way() / used_bounds(result.surface).diagonal());
-  std::printf("  time: %s\n", format_duration(result.seconds).c_str());
+  print_time(result);
 }
 
 }  // namespace
@@ -93,7 +110,8 @@ int run_tetrahedralize(const TetrahedralizeOptions& options) {
   TetrahedralizeParams params{.edge = options.edge,
                               .tets = options.tets,
                               .error = parse_error_budget(options.error, used_bounds(result.surface).diagonal()),
-                              .thickness = options.thickness};
+                              .thickness = options.thickness,
+                              .mode = options.mode == "embedded" ? TetMode::Embedded : TetMode::Conforming};
   if (params.edge == 0 && params.tets == 0 && params.error == 0) params.tets = 20000;
   const auto start = std::chrono::steady_clock::now();
   result.mesh = tetrahedralize(result.surface, params, options.mesh, threads, log, times);

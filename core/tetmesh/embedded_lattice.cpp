@@ -1,0 +1,341 @@
+#include "core/tetmesh/embedded_lattice.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "core/base/check.h"
+#include "core/mesh/disjoint_sets.h"
+#include "core/tetmesh/cell_parts.h"
+
+namespace softreel {
+namespace {
+
+constexpr std::int64_t kGrain = 64;
+
+/// How many cells in a row parts may be made one in.
+constexpr int kMergeRounds = 2;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// A lattice tetrahedron of the cover: its triangles and its copies.
+struct CoverCell {
+  BccCell cell;
+  std::uint64_t order = 0;          ///< along the lattice
+  std::size_t cuts = 0, count = 0;  ///< its cuts [cuts, cuts + count)
+  CellParts parts;
+  Index first_copy = 0;
+
+  /// The copy that is inside at corner k, -1 if none is.
+  Index corner_copy(std::size_t k) const { return parts.corners[k] < 0 ? -1 : first_copy + parts.corners[k]; }
+};
+
+/// Cells, copies and nodes on their way to a mesh.
+class Cover {
+ public:
+  Cover(const LatticeSurface& surface, const SurfaceMesh& mesh, const Threads& threads)
+      : surface_(surface), inside_(surface, mesh, threads), cuts_(cut_cells(surface, threads)) {
+    find_cells();
+    find_parts(threads);
+  }
+
+  EmbeddedLattice make(std::span<const CarriedPoint> points) {
+    DisjointSets nodes = join_copies();
+    merge_short_branches(nodes);
+    EmbeddedLattice result;
+    result.branches = static_cast<Index>(copies_with_a_common_face(nodes).size());
+    result.mesh.lattice = surface_.frame;
+    const std::vector<Index> elements = make_elements(nodes, result.mesh);
+    const std::vector<Index> vertices = vertex_elements(elements);
+    for (const CarriedPoint& point : points)
+      result.mesh.carriers.push_back(point.vertex >= 0 ? vertices[at(point.vertex)] : find_element(elements, point));
+    for (const CoverCell& cell : cells_) result.cut_cells += cell.count > 0 ? 1 : 0;
+    result.copies = static_cast<Index>(result.mesh.tets.size() - cells_.size());
+    return result;
+  }
+
+ private:
+  Index copies() const { return cells_.back().first_copy + cells_.back().parts.count; }
+
+  /// Cells with triangles, and those between them that have a corner inside.
+  void find_cells() {
+    for (std::size_t begin = 0, end = 0; begin < cuts_.size(); begin = end) {
+      while (end < cuts_.size() && cuts_[end].cell == cuts_[begin].cell) ++end;
+      add_cell(cell_of_key(cuts_[begin].cell), begin, end - begin);
+    }
+    for (const LatticeNode& node : inside_.nodes()) {
+      // Without a triangle all corners of a cell are inside, cube centres too; but round an open surface any may be.
+      if (surface_.closed && (node[0] & 1) == 0) continue;
+      for (const BccCell& cell : cells_around(node)) add_cell(cell, 0, 0);
+    }
+    lattice_nodes_.number_nodes();
+    for (CoverCell& cell : cells_)
+      cell.order = kCellTypes * static_cast<std::uint64_t>(lattice_nodes_.find(cell.cell.center)) + cell.cell.type;
+    std::sort(cells_.begin(), cells_.end(), [](const CoverCell& a, const CoverCell& b) { return a.order < b.order; });
+    numbers_ = KeyIndex();
+    for (const CoverCell& cell : cells_) numbers_.insert(cell_key(cell.cell));
+  }
+
+  void add_cell(const BccCell& cell, std::size_t cuts, std::size_t count) {
+    if (!numbers_.insert(cell_key(cell)).second) return;
+    cells_.push_back({cell, 0, cuts, count, {}, 0});
+    for (const LatticeNode& corner : cell_corners(cell)) lattice_nodes_.insert(corner);
+  }
+
+  void find_parts(const Threads& threads) {
+    cut_copies_.resize(cuts_.size());
+    threads.for_chunks(static_cast<std::int64_t>(cells_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (auto c = static_cast<std::size_t>(begin); c < static_cast<std::size_t>(end); ++c) {
+        CoverCell& cell = cells_[c];
+        cell.parts = find_cell_parts(surface_, inside_, cell.cell, std::span(cuts_).subspan(cell.cuts, cell.count),
+                                     std::span(cut_copies_).subspan(cell.cuts, cell.count));
+      }
+    });
+    Index first = 0;
+    for (CoverCell& cell : cells_) {
+      cell.first_copy = first;
+      first += cell.parts.count;
+      for (std::size_t i = cell.cuts; i < cell.cuts + cell.count; ++i) cut_copies_[i] += cell.first_copy;
+    }
+  }
+
+  /// Sets of (copy, corner) that are one node.
+  DisjointSets join_copies() const {
+    DisjointSets nodes(4 * at(copies()));
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+      for (std::size_t face = 0; face < 4; ++face) {
+        const CellNeighbor neighbor = cell_neighbor(cells_[c].cell, face);
+        const Index other = numbers_.find(cell_key(neighbor.cell));
+        if (other > static_cast<Index>(c)) join_across(cells_[c], cells_[at(other)], face, neighbor, nodes);
+      }
+    return nodes;
+  }
+
+  void join_across(const CoverCell& a, const CoverCell& b, std::size_t face, const CellNeighbor& neighbor,
+                   DisjointSets& nodes) const {
+    std::vector<CopyPair> pairs = pairs_across(a, b, face, neighbor);
+    for (const CopyPair& pair : pairs) {
+      const bool whole = pair.corners == 0 || is_best(pairs, pair);
+      for (std::size_t k = 0; k < 4; ++k)
+        if (k != face && (whole || ((pair.corners >> k) & 1) != 0))
+          nodes.join(4 * pair.a + static_cast<Index>(k), 4 * pair.b + neighbor.corner[k]);
+    }
+  }
+
+  /// Copies on either side of a face that are joined there, each pair once.
+  struct CopyPair {
+    Index a, b;
+    unsigned corners;  // bit k: corner k of a, on the face, is inside and theirs
+    double fill;       // of both
+  };
+
+  std::vector<CopyPair> pairs_across(const CoverCell& a, const CoverCell& b, std::size_t face,
+                                     const CellNeighbor& neighbor) const {
+    std::vector<CopyPair> pairs;
+    const auto add = [&](Index copy_a, Index copy_b, unsigned corners) {
+      for (CopyPair& pair : pairs)
+        if (pair.a == copy_a && pair.b == copy_b) {
+          pair.corners |= corners;
+          return;
+        }
+      pairs.push_back({copy_a, copy_b, corners,
+                       a.parts.fills[at(copy_a - a.first_copy)] + b.parts.fills[at(copy_b - b.first_copy)]});
+    };
+    for (std::size_t k = 0; k < 4; ++k)
+      if (k != face && a.corner_copy(k) >= 0 && b.corner_copy(neighbor.corner[k]) >= 0)
+        add(a.corner_copy(k), b.corner_copy(neighbor.corner[k]), 1U << k);
+    // Triangles that pass through the face, as either of the two sees it; both lists ascend.
+    for (std::size_t i = a.cuts, j = b.cuts; i < a.cuts + a.count && j < b.cuts + b.count;) {
+      const Index t = cuts_[i].triangle, u = cuts_[j].triangle;
+      if (t == u && (((cuts_[i].faces >> face) & 1) != 0 || ((cuts_[j].faces >> neighbor.face) & 1) != 0))
+        add(cut_copies_[i], cut_copies_[j], 0);
+      i += t <= u ? 1 : 0;
+      j += u <= t ? 1 : 0;
+    }
+    return pairs;
+  }
+
+  /// Two parts on one side of a face that are one on the other, as at the end of a slit: both cannot have the whole
+  /// face. One gets it; another keeps the nodes that lie in it, about which all is solid, so that it stays joined round
+  /// them. (One without such nodes, a thin limb, keeps the whole face too: what is joined is never parted.)
+  static bool is_best(const std::vector<CopyPair>& pairs, const CopyPair& pair) {
+    return std::none_of(pairs.begin(), pairs.end(), [&](const CopyPair& other) {
+      if ((other.a == pair.a) == (other.b == pair.b)) return false;  // itself, or beside it
+      const int own = std::popcount(pair.corners), others = std::popcount(other.corners);
+      if (own != others) return others > own;
+      if (other.fill != pair.fill) return other.fill > pair.fill;
+      return std::pair(other.a, other.b) < std::pair(pair.a, pair.b);
+    });
+  }
+
+  /// Two copies of one cell that have come to share a face, and their corner opposite it.
+  struct FacePair {
+    Index a, b;
+    std::size_t corner;
+  };
+
+  std::vector<FacePair> copies_with_a_common_face(DisjointSets& nodes) const {
+    std::vector<FacePair> pairs;
+    for (const CoverCell& cell : cells_)
+      for (Index a = cell.first_copy; a < cell.first_copy + cell.parts.count; ++a)
+        for (Index b = a + 1; b < cell.first_copy + cell.parts.count; ++b) {
+          std::size_t apart = 0, count = 0;
+          for (std::size_t k = 0; k < 4; ++k)
+            if (nodes.root(4 * a + static_cast<Index>(k)) != nodes.root(4 * b + static_cast<Index>(k))) {
+              apart = k;
+              ++count;
+            }
+          if (count == 1) pairs.push_back({a, b, apart});
+        }
+    return pairs;
+  }
+
+  static void merge(const FacePair& pair, DisjointSets& nodes) {
+    const auto k = static_cast<Index>(pair.corner);
+    nodes.join(4 * pair.a + k, 4 * pair.b + k);
+  }
+
+  /// Three elements at one face are no manifold. Where parts are two in one cell only, or in a few, as beside a crease
+  /// that dips through a cell, they become one element there. Where that would run on along them, as with fingers,
+  /// they are left as they are.
+  void merge_short_branches(DisjointSets& nodes) const {
+    DisjointSets merged = nodes;
+    std::vector<FacePair> pairs = copies_with_a_common_face(merged), all;
+    for (int round = 0; round < kMergeRounds && !pairs.empty(); ++round) {
+      for (const FacePair& pair : pairs) merge(pair, merged);
+      all.insert(all.end(), pairs.begin(), pairs.end());
+      pairs = copies_with_a_common_face(merged);
+    }
+    const std::size_t done = all.size();
+    all.insert(all.end(), pairs.begin(), pairs.end());  // what would have to go on
+    DisjointSets chains = chain_pairs(all, merged);
+    std::vector<bool> endless(all.size(), false);
+    for (std::size_t i = done; i < all.size(); ++i) endless[at(chains.root(static_cast<Index>(i)))] = true;
+    for (std::size_t i = 0; i < done; ++i)
+      if (!endless[at(chains.root(static_cast<Index>(i)))]) merge(all[i], nodes);
+  }
+
+  /// Sets of pairs one of which led to the next: by the node that it made one.
+  static DisjointSets chain_pairs(const std::vector<FacePair>& pairs, DisjointSets& merged) {
+    std::vector<std::pair<Index, Index>> made;  // node, pair
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      made.emplace_back(merged.root(4 * pairs[i].a + static_cast<Index>(pairs[i].corner)), static_cast<Index>(i));
+    std::sort(made.begin(), made.end());
+    DisjointSets chains(pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      for (const Index copy : {pairs[i].a, pairs[i].b})
+        for (Index k = 0; k < 4; ++k) {
+          const Index node = merged.root(4 * copy + k);
+          for (auto m = std::lower_bound(made.begin(), made.end(), std::pair(node, Index{0}));
+               m != made.end() && m->first == node; ++m)
+            chains.join(static_cast<Index>(i), m->second);
+        }
+    return chains;
+  }
+
+  /// Numbers the nodes along the lattice and makes the elements; copies of one cell with the same nodes are one.
+  /// Returns the element of each copy.
+  std::vector<Index> make_elements(DisjointSets& nodes, TetMesh& mesh) const {
+    const std::vector<Index> number = number_nodes(nodes, mesh);
+    std::vector<Index> elements(at(copies()));
+    for (const CoverCell& cell : cells_) {
+      const auto first = static_cast<Index>(mesh.tets.size());
+      for (Index part = 0; part < cell.parts.count; ++part) {
+        Tet tet;
+        for (std::size_t k = 0; k < 4; ++k)
+          tet[k] = number[at(nodes.root(4 * (cell.first_copy + part) + static_cast<Index>(k)))];
+        const auto same = std::find(mesh.tets.begin() + first, mesh.tets.end(), tet);
+        elements[at(cell.first_copy + part)] = static_cast<Index>(same - mesh.tets.begin());
+        if (same == mesh.tets.end()) {
+          mesh.tets.push_back(tet);
+          mesh.fill.push_back(0);
+        }
+        mesh.fill[at(elements[at(cell.first_copy + part)])] += cell.parts.fills[at(part)];
+      }
+    }
+    for (double& fill : mesh.fill) fill = std::clamp(fill, kLeastFill, 1.0);
+    return elements;
+  }
+
+  /// Numbers of the roots, in the order of the lattice's nodes, then of the copies.
+  std::vector<Index> number_nodes(DisjointSets& nodes, TetMesh& mesh) const {
+    std::vector<std::pair<Index, Index>> roots;  // lattice node, root
+    for (const CoverCell& cell : cells_) {
+      const std::array<LatticeNode, 4> corners = cell_corners(cell.cell);
+      for (Index part = 0; part < cell.parts.count; ++part)
+        for (std::size_t k = 0; k < 4; ++k) {
+          const Index item = 4 * (cell.first_copy + part) + static_cast<Index>(k);
+          if (nodes.root(item) == item) roots.emplace_back(lattice_nodes_.find(corners[k]), item);
+        }
+    }
+    std::sort(roots.begin(), roots.end());
+    std::vector<Index> number(4 * at(copies()), -1);
+    for (const auto& [lattice_node, root] : roots) {
+      number[at(root)] = static_cast<Index>(mesh.nodes.size());
+      mesh.nodes.push_back(lattice_position(surface_.frame, lattice_nodes_.nodes()[at(lattice_node)]));
+    }
+    return number;
+  }
+
+  /// Per vertex of the surface the first element that holds it in a copy of its own part, -1 for one without triangles.
+  std::vector<Index> vertex_elements(const std::vector<Index>& elements) const {
+    std::vector<Index> result(surface_.points.size(), -1);
+    for (std::size_t i = 0; i < cuts_.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (((cuts_[i].points >> k) & 1) == 0) continue;
+        Index& found = result[at(surface_.triangles[at(cuts_[i].triangle)][k])];
+        const Index element = elements[at(cut_copies_[i])];
+        if (found < 0 || element < found) found = element;
+      }
+    return result;
+  }
+
+  Index find_element(const std::vector<Index>& elements, const CarriedPoint& point) const {
+    const Vec3 place = (point.position - surface_.frame.origin) * (2.0 / surface_.frame.spacing);
+    if (!(place.cwiseAbs().maxCoeff() < kMaxLatticeCoordinate)) return -1;  // or not a number
+    const Index number = numbers_.find(cell_key(cell_at(place)));
+    if (number < 0) return -1;
+    const CoverCell& cell = cells_[at(number)];
+    if (cell.parts.count == 1) return elements[at(cell.first_copy)];
+    const std::size_t cut =
+        nearest_cut_in_cell(surface_, inside_, cell.cell, std::span(cuts_).subspan(cell.cuts, cell.count), place);
+    return elements[at(cut_copies_[cell.cuts + cut])];
+  }
+
+  const LatticeSurface& surface_;
+  SolidInside inside_;
+  std::vector<CellCut> cuts_;
+  std::vector<Index> cut_copies_;  ///< per cut: the copy it is in (first its part within the cell)
+  std::vector<CoverCell> cells_;   ///< along the lattice
+  KeyIndex numbers_;               ///< of cells, by cell_key
+  LatticeNodeSet lattice_nodes_;
+};
+
+}  // namespace
+
+EmbeddedLattice cover_with_lattice(const SurfaceMesh& surface, const SurfaceParts& parts, const LatticeFrame& frame,
+                                   std::span<const CarriedPoint> points, const Threads& threads) {
+  const LatticeSurface lattice_surface = make_lattice_surface(surface, parts, frame);
+  Cover cover(lattice_surface, surface, threads);
+  return cover.make(points);
+}
+
+EmbeddedFacts describe_embedded(const TetMesh& mesh) {
+  EmbeddedFacts facts;
+  std::vector<std::array<double, 3>> places;
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    std::array<Vec3, 4> x;
+    for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.nodes[at(mesh.tets[e][k])];
+    const Vec3 sum = x[0] + x[1] + x[2] + x[3];
+    places.push_back({sum[0], sum[1], sum[2]});
+    facts.cell_volume += tet_volume(x[0], x[1], x[2], x[3]);
+    facts.cut_cells += mesh.fill_of(e) < 1 ? 1 : 0;
+  }
+  std::sort(places.begin(), places.end());
+  facts.copies = static_cast<Index>(places.end() - std::unique(places.begin(), places.end()));
+  return facts;
+}
+
+}  // namespace softreel
