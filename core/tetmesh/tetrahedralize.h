@@ -18,6 +18,7 @@ struct TetrahedralizeParams {
   std::int64_t tets = 0;  ///< wanted number of tetrahedra, met within 5 %
   double error = 0;       ///< wanted two-way distance to the surface, m: graded, see error_budget.h; no lattice
   double thickness = 0;   ///< of the open parts of the surface, m; 0: they count as closed where they nearly are
+  bool optimize = false;  ///< makes the worst angles better by moves and flips, see improvement/angle_improvement.h
 };
 
 /// Fills a closed surface with tetrahedra by isosurface stuffing of a BCC lattice (Labelle and Shewchuk 2007).
