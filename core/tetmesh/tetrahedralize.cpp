@@ -12,6 +12,7 @@
 #include "core/tetmesh/embedded_lattice.h"
 #include "core/tetmesh/error_budget.h"
 #include "core/tetmesh/graded_stuffing.h"
+#include "core/tetmesh/improvement/angle_improvement.h"
 #include "core/tetmesh/mesh_pieces.h"
 #include "core/tetmesh/sheet_shells.h"
 #include "core/tetmesh/tet_quality.h"
@@ -343,6 +344,11 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
   if (params.error == 0) {
     const ScopedStage stage(times, "tetrahedralize/fit");
     fit_boundary(stuffed, prepared, {}, threads);
+  }
+  if (params.optimize) {
+    const ScopedStage stage(times, "tetrahedralize/optimize");
+    const AngleImprovement done = improve_angles(stuffed.mesh, &prepared, {}, threads);
+    log.info(fmt::format("body '{}': {}", name, describe(done)));
   }
   require_quality(job, stuffed.mesh,
                   params.error > 0 ? AngleBounds{kMinGradedDihedral, kMaxGradedDihedral} : AngleBounds{});

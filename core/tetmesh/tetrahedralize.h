@@ -25,6 +25,7 @@ struct TetrahedralizeParams {
   double error = 0;       ///< wanted two-way distance to the surface, m: graded, see error_budget.h; no lattice
   double thickness = 0;   ///< of the open parts of the surface, m; 0: they count as closed where they nearly are
   TetMode mode = TetMode::Conforming;
+  bool optimize = false;  ///< makes the worst angles better by moves and flips, see improvement/angle_improvement.h
 };
 
 /// Fills a closed surface with tetrahedra by isosurface stuffing of a BCC lattice (Labelle and Shewchuk 2007).

@@ -135,7 +135,10 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
 
   CLI::App* tets = app.add_subcommand("tetrahedralize", "fill a surface with tetrahedra and write them");
   TetrahedralizeOptions& options = parsed.tetrahedralize;
-  tets->add_option("mesh", options.mesh, "surface mesh in any format assimp reads")->required();
+  tets->add_option("mesh", options.mesh,
+                   "surface mesh in any format assimp reads, or tetrahedra (.mesh, .msh, .vtk, .vtu) to optimize or to "
+                   "write in another format")
+      ->required();
   tets->add_option("-o,--output", options.output, "file to write: .vtu, .msh (Gmsh 2.2) or .mesh (Medit)")->required();
   CLI::Option* edge = tets->add_option("--edge", options.edge, "long edge of the lattice, in the mesh's unit")
                           ->check(CLI::PositiveNumber);
@@ -154,6 +157,7 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   tets->add_option("--thickness", options.thickness, "make open sheets this thick, in the mesh's unit after fit")
       ->check(CLI::PositiveNumber);
   tets->add_option("--fit", options.fit, "scale the mesh to this height first, m")->check(CLI::PositiveNumber);
+  tets->add_flag("--optimize", options.optimize, "make the worst dihedral angles better by moving nodes and by flips");
   tets->add_option("--threads", options.threads, "number of threads [all processors]")->check(CLI::Range(1, 1024));
   tets->add_flag("--quiet", options.quiet, "print warnings and errors only");
   tets->add_flag("--json", options.json, "print the report as JSON");

@@ -78,10 +78,10 @@ struct TetrahedralizeOptions {
   double edge = 0, fit = 0, thickness = 0;
   long tets = 0;
   int threads = 0;
-  bool quiet = false, json = false;
+  bool optimize = false, quiet = false, json = false;
 };
 
-/// Fills a surface and writes the tetrahedra.
+/// Fills a surface and writes the tetrahedra; given tetrahedra are optimized or written in another format only.
 int run_tetrahedralize(const TetrahedralizeOptions& options);
 
 }  // namespace softreel

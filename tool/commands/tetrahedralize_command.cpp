@@ -11,6 +11,7 @@
 #include "core/mesh/placement.h"
 #include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/embedded_lattice.h"
+#include "core/tetmesh/improvement/angle_improvement.h"
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/tetrahedralize.h"
@@ -22,11 +23,14 @@ namespace softreel {
 namespace {
 
 struct Result {
-  SurfaceMesh surface;
+  SurfaceMesh surface;  ///< empty if tetrahedra were given
   TetMesh mesh;
   TetQuality quality;
-  SurfaceDeviation deviation;
+  std::optional<SurfaceDeviation> deviation;  ///< none of given tetrahedra and whole lattice cells
+  std::vector<std::string> repairs;           ///< what was done to the surface, one line each
   double seconds = 0;
+
+  bool is_given() const { return surface.triangles.empty(); }
 };
 
 /// A format that cannot be written is said before the work.
@@ -50,7 +54,6 @@ double parse_error_budget(const std::string& text, double diagonal) {
 }
 
 std::string to_json(const TetrahedralizeOptions& options, const Result& result) {
-  const double diagonal = used_bounds(result.surface).diagonal();
   nlohmann::ordered_json json = {{"mesh", options.mesh},
                                  {"output", options.output},
                                  {"tets", result.mesh.tets.size()},
@@ -59,40 +62,102 @@ std::string to_json(const TetrahedralizeOptions& options, const Result& result) 
                                  {"volume", result.quality.volume},
                                  {"min_dihedral_deg", result.quality.min_dihedral},
                                  {"first_percentile_dihedral_deg", result.quality.first_percentile_dihedral},
-                                 {"max_dihedral_deg", result.quality.max_dihedral},
-                                 {"distance", result.deviation.two_way()},
-                                 {"distance_share_of_diagonal", result.deviation.two_way() / diagonal},
-                                 {"seconds", result.seconds}};
+                                 {"max_dihedral_deg", result.quality.max_dihedral}};
   if (!result.mesh.fill.empty()) {
     const EmbeddedFacts facts = describe_embedded(result.mesh);
     json["filled_share"] = result.quality.volume / facts.cell_volume;
     json["cut_cells"] = facts.cut_cells;
     json["copies"] = facts.copies;
   }
+  if (result.deviation) {
+    json["distance"] = result.deviation->two_way();
+    json["distance_share_of_diagonal"] = result.deviation->two_way() / used_bounds(result.surface).diagonal();
+  }
+  json["repairs"] = result.repairs;
+  json["seconds"] = result.seconds;
   return json.dump(1);
 }
 
-void print_time(const Result& result) {
-  std::printf("  time: %s\n", format_duration(result.seconds).c_str());
+/// What the sizes are: of one lattice, of several, or whatever was given.
+std::string describe_sizes(const Result& result) {
+  const double edge = result.mesh.lattice.spacing;
+  if (edge > 0) return fmt::format("long edge {:.6g}", edge);
+  return result.is_given() ? "as given" : "graded";
 }
 
 void print_text(const TetrahedralizeOptions& options, const Result& result) {
   const TetQuality& quality = result.quality;
-  const double edge = result.mesh.lattice.spacing;
   std::printf("%s: %zu tetrahedra, %zu nodes, %s, volume %.6g\n", options.output.c_str(), result.mesh.tets.size(),
-              result.mesh.nodes.size(), edge > 0 ? fmt::format("long edge {:.6g}", edge).c_str() : "graded",
-              quality.volume);
+              result.mesh.nodes.size(), describe_sizes(result).c_str(), quality.volume);
   std::printf("  dihedral angles: min %.2f, first percentile %.2f, max %.2f degrees\n", quality.min_dihedral,
               quality.first_percentile_dihedral, quality.max_dihedral);
   if (!result.mesh.fill.empty()) {
     const EmbeddedFacts facts = describe_embedded(result.mesh);
     std::printf("  embedded: filled to %.1f %%, %d cut cells, %d copies of cells\n",
                 100 * quality.volume / facts.cell_volume, facts.cut_cells, facts.copies);
-    return print_time(result);
   }
-  std::printf("  distance to the surface: at most %.4g (%.3f %% of the box diagonal)\n", result.deviation.two_way(),
-              100 * result.deviation.two_way() / used_bounds(result.surface).diagonal());
-  print_time(result);
+  if (result.deviation)
+    std::printf("  distance to the surface: at most %.4g (%.3f %% of the box diagonal)\n", result.deviation->two_way(),
+                100 * result.deviation->two_way() / used_bounds(result.surface).diagonal());
+  std::printf("  time: %s\n", format_duration(result.seconds).c_str());
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Sizes and placement belong to surfaces.
+void require_no_sizes(const TetrahedralizeOptions& options) {
+  const std::pair<const char*, bool> given[] = {{"--edge", options.edge != 0},
+                                                {"--tets", options.tets != 0},
+                                                {"--error", !options.error.empty()},
+                                                {"--thickness", options.thickness != 0},
+                                                {"--fit", options.fit != 0}};
+  for (const auto& [name, is_given] : given)
+    if (is_given)
+      throw input_error(
+          fmt::format("{0}: {1} holds tetrahedra already, and they are not made anew.\n  Accepted with tetrahedra: "
+                      "--optimize, and -o with any format. Leave {0} out, or name a surface mesh.",
+                      name, options.mesh));
+}
+
+Result take_given(const TetrahedralizeOptions& options, const Threads& threads, const Log& log) {
+  require_no_sizes(options);
+  Result result;
+  result.mesh = read_tet_mesh(options.mesh, log);
+  const auto start = std::chrono::steady_clock::now();
+  if (options.optimize)
+    log.info(fmt::format("{}: {}", options.mesh, describe(improve_angles(result.mesh, nullptr, {}, threads))));
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+Result fill(const TetrahedralizeOptions& options, const Threads& threads, const Log& log) {
+  Result result;
+  const Log repairs{[&](const std::string& line) {
+                      result.repairs.push_back(line);
+                      log.info(line);
+                    },
+                    [&](const std::string& line) {
+                      result.repairs.push_back(line);
+                      log.warn(line);
+                    }};
+  result.surface = import_mesh(options.mesh, repairs);
+  for (const std::string& line : repair_mesh(result.surface)) repairs.info(line);
+  if (options.fit > 0) apply(place(result.surface, {.fit = options.fit}), result.surface);
+  TetrahedralizeParams params{.edge = options.edge,
+                              .tets = options.tets,
+                              .error = parse_error_budget(options.error, used_bounds(result.surface).diagonal()),
+                              .thickness = options.thickness,
+                              .mode = options.mode == "embedded" ? TetMode::Embedded : TetMode::Conforming,
+                              .optimize = options.optimize};
+  if (params.edge == 0 && params.tets == 0 && params.error == 0) params.tets = 20000;
+  StageTimes times;
+  const auto start = std::chrono::steady_clock::now();
+  result.mesh = tetrahedralize(result.surface, params, options.mesh, threads, repairs, times);
+  result.seconds = seconds_since(start);
+  if (params.mode == TetMode::Conforming) result.deviation = measure_deviation(result.surface, result.mesh, threads);
+  return result;
 }
 
 }  // namespace
@@ -100,24 +165,10 @@ void print_text(const TetrahedralizeOptions& options, const Result& result) {
 int run_tetrahedralize(const TetrahedralizeOptions& options) {
   check_extension(options.output);
   Console console(options.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0);
-  const Log log = console.log();
   const Threads threads(options.threads);
-  StageTimes times;
-  Result result;
-  result.surface = import_mesh(options.mesh, log);
-  for (const std::string& line : repair_mesh(result.surface)) log.info(line);
-  if (options.fit > 0) apply(place(result.surface, {.fit = options.fit}), result.surface);
-  TetrahedralizeParams params{.edge = options.edge,
-                              .tets = options.tets,
-                              .error = parse_error_budget(options.error, used_bounds(result.surface).diagonal()),
-                              .thickness = options.thickness,
-                              .mode = options.mode == "embedded" ? TetMode::Embedded : TetMode::Conforming};
-  if (params.edge == 0 && params.tets == 0 && params.error == 0) params.tets = 20000;
-  const auto start = std::chrono::steady_clock::now();
-  result.mesh = tetrahedralize(result.surface, params, options.mesh, threads, log, times);
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const bool is_given = is_tet_mesh_file(options.mesh);
+  Result result = (is_given ? take_given : fill)(options, threads, console.log());
   result.quality = measure_quality(result.mesh, threads);
-  result.deviation = measure_deviation(result.surface, result.mesh, threads);
   write_file(options.output, encode_tet_mesh(result.mesh, std::filesystem::path(options.output).extension().string()));
   if (options.json) {
     std::printf("%s\n", to_json(options, result).c_str());
