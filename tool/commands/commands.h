@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tool/commands/session.h"
+#include "tool/report/studio.h"
 
 namespace softreel {
 
@@ -67,10 +68,12 @@ int run_clean(const CleanOptions& options);
 
 struct InspectOptions {
   std::string mesh;
+  PictureOptions picture;
+  int threads = 0;
   bool json = false;
 };
 
-/// Says what is in a surface mesh.
+/// Says what is in a surface mesh or in tetrahedra, and draws them if asked.
 int run_inspect(const InspectOptions& options);
 
 struct TetrahedralizeOptions {
@@ -79,9 +82,10 @@ struct TetrahedralizeOptions {
   long tets = 0;
   int threads = 0;
   bool quiet = false, json = false;
+  PictureOptions picture;
 };
 
-/// Fills a surface and writes the tetrahedra.
+/// Fills a surface, writes the tetrahedra, and draws them if asked.
 int run_tetrahedralize(const TetrahedralizeOptions& options);
 
 }  // namespace softreel

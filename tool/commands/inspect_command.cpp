@@ -6,12 +6,15 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "core/base/error.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
 #include "tool/commands/commands.h"
+#include "tool/report/cut_picture.h"
+#include "tool/report/surface_picture.h"
 #include "tool/stages/atomic_file.h"
 
 namespace softreel {
@@ -82,12 +85,7 @@ void print_tets_json(const InspectOptions& options, const TetFacts& facts) {
   std::printf("%s\n", json.dump(1).c_str());
 }
 
-int inspect_tets(const InspectOptions& options, const std::string& extension, const Log& log) {
-  const TetFacts facts = read_tets(options.mesh, extension, log);
-  if (options.json) {
-    print_tets_json(options, facts);
-    return 0;
-  }
+void print_tets_text(const InspectOptions& options, const TetFacts& facts) {
   const Vec3 size = facts.box.size();
   std::printf("%s: %zu tetrahedra, %zu nodes, %zu boundary faces; box %.6g x %.6g x %.6g\n", options.mesh.c_str(),
               facts.mesh.tets.size(), facts.mesh.nodes.size(), facts.boundary_faces, size.x(), size.y(), size.z());
@@ -95,22 +93,23 @@ int inspect_tets(const InspectOptions& options, const std::string& extension, co
   std::printf("  volume %.6g, smallest element %.3g\n", facts.quality.volume, facts.quality.min_volume);
   std::printf("  dihedral angles: min %.2f, first percentile %.2f, max %.2f degrees\n", facts.quality.min_dihedral,
               facts.quality.first_percentile_dihedral, facts.quality.max_dihedral);
+}
+
+void print_shown(const InspectOptions& options, const std::string& shown) {
+  if (!options.json) std::printf("  picture: %s\n", shown.c_str());
+}
+
+int inspect_tets(const InspectOptions& options, const std::string& extension, const Log& log) {
+  check_cut_picture(options.picture);
+  const TetFacts facts = read_tets(options.mesh, extension, log);
+  options.json ? print_tets_json(options, facts) : print_tets_text(options, facts);
+  if (!options.picture.path.empty())
+    print_shown(options, draw_cut_picture(facts.mesh, options.picture, Threads(options.threads)));
   return 0;
 }
 
-}  // namespace
-
-int run_inspect(const InspectOptions& options) {
-  Console console(Verbosity::Normal, isatty(STDERR_FILENO) != 0);
-  const std::string extension = std::filesystem::path(options.mesh).extension().string();
-  if (is_tet_mesh_extension(extension)) return inspect_tets(options, extension, console.log());
-  SurfaceMesh mesh = import_mesh(options.mesh, console.log());
-  const MeshFacts facts = check_mesh(mesh);
-  const std::vector<std::string> repairs = repair_mesh(mesh);
-  if (options.json) {
-    std::printf("%s\n", facts_json(options, facts, mesh, repairs).c_str());
-    return 0;
-  }
+void print_facts_text(const InspectOptions& options, const MeshFacts& facts, const SurfaceMesh& mesh,
+                      const std::vector<std::string>& repairs) {
   const Vec3 size = facts.bounds.size();
   std::printf("%s: %zu polygons; box %.6g x %.6g x %.6g from (%.6g, %.6g, %.6g)\n", options.mesh.c_str(),
               mesh.polygons.size(), size.x(), size.y(), size.z(), facts.bounds.min.x(), facts.bounds.min.y(),
@@ -119,6 +118,35 @@ int run_inspect(const InspectOptions& options) {
   for (const std::string& line : repairs) std::printf("  a shot would repair: %s\n", line.c_str());
   for (const VertexGroup& group : mesh.groups)
     std::printf("  group \"%s\": %zu vertices\n", group.name.c_str(), group.vertices.size());
+}
+
+void check_surface_picture(const InspectOptions& options) {
+  check_picture(options.picture);
+  if (!options.picture.cut.empty())
+    throw input_error(
+        fmt::format("--cut {}: {} is a surface, which has no inside to show.\n  Accepted: --cut with tetrahedra "
+                    "(.mesh, .msh, .vtk, "
+                    ".vtu). Leave it out, or use softreel tetrahedralize.",
+                    options.picture.cut, options.mesh));
+}
+
+}  // namespace
+
+int run_inspect(const InspectOptions& options) {
+  Console console(Verbosity::Normal, isatty(STDERR_FILENO) != 0);
+  const std::string extension = std::filesystem::path(options.mesh).extension().string();
+  if (is_tet_mesh_extension(extension)) return inspect_tets(options, extension, console.log());
+  check_surface_picture(options);
+  const SurfaceMesh mesh = import_mesh(options.mesh, console.log());
+  const MeshFacts facts = check_mesh(mesh);
+  SurfaceMesh repaired = mesh;
+  const std::vector<std::string> repairs = repair_mesh(repaired);
+  if (options.json)
+    std::printf("%s\n", facts_json(options, facts, mesh, repairs).c_str());
+  else
+    print_facts_text(options, facts, mesh, repairs);
+  if (!options.picture.path.empty())
+    print_shown(options, draw_surface_picture(mesh, repaired, options.picture, Threads(options.threads)));
   return 0;
 }
 

@@ -15,6 +15,7 @@
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/tetrahedralize.h"
 #include "tool/commands/commands.h"
+#include "tool/report/cut_picture.h"
 #include "tool/stages/atomic_file.h"
 
 namespace softreel {
@@ -83,10 +84,18 @@ void print_text(const TetrahedralizeOptions& options, const Result& result) {
   std::printf("  time: %s\n", format_duration(result.seconds).c_str());
 }
 
+/// Draws the picture that was asked for; said in a line of the text report.
+void add_picture(const TetrahedralizeOptions& options, const TetMesh& mesh, const Threads& threads) {
+  if (options.picture.path.empty()) return;
+  const std::string shown = draw_cut_picture(mesh, options.picture, threads);
+  if (!options.json) std::printf("  picture: %s\n", shown.c_str());
+}
+
 }  // namespace
 
 int run_tetrahedralize(const TetrahedralizeOptions& options) {
   check_extension(options.output);
+  check_cut_picture(options.picture);
   Console console(options.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0);
   const Log log = console.log();
   const Threads threads(options.threads);
@@ -111,6 +120,7 @@ int run_tetrahedralize(const TetrahedralizeOptions& options) {
   } else {
     print_text(options, result);
   }
+  add_picture(options, result.mesh, threads);
   return 0;
 }
 
