@@ -1,5 +1,7 @@
 #include "render/pathtrace/path_integrator.h"
 
+#include "render/pathtrace/edge_lines.h"
+
 namespace softreel {
 
 namespace {
@@ -13,8 +15,11 @@ enum Dimension : std::size_t { kLightU = 0, kLightV = 1, kBsdfU = 2, kBsdfV = 3,
 
 }  // namespace
 
-const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, const SurfacePoint& point) const {
+const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, const SurfacePoint& point, const Ray& ray) const {
   const auto mesh = static_cast<std::size_t>(hit.mesh);
+  // Lines have a width in the picture only: no other ray sees them.
+  if (picture_.lines[mesh] && origin_.from_camera && on_edge_line(*picture_.meshes[mesh], hit, ray, picture_.pixel))
+    return *picture_.lines[mesh];
   const std::vector<Bsdf>& bsdfs = scattered_wide_ ? picture_.blurred : picture_.bsdfs;
   if (picture_.pattern && mesh + 1 == picture_.meshes.size() && picture_.pattern->alternate(point.position))
     return bsdfs.back();
@@ -102,7 +107,7 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     collect(ray, found, hit.distance);
     if (!found) break;
     const SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
-    const Bsdf& bsdf = bsdf_at(hit, point);
+    const Bsdf& bsdf = bsdf_at(hit, point, ray);
     if (bounces_ == 0) first_hit_ = {bsdf.albedo(), point.shading_normal, hit.distance};
     if (point.inside && bsdf.transmits())
       throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());

@@ -20,10 +20,12 @@ namespace softreel {
 /// A scene made ready for paths. Borrows the scene's meshes and `rays`.
 struct Picture {
   const RayScene* rays = nullptr;
-  std::vector<const MotionMesh*> meshes;  ///< in the order of `rays`
-  std::vector<Bsdf> bsdfs;                ///< per mesh; last, if there is a pattern: its second tone
-  std::vector<Bsdf> blurred;              ///< the same, as seen by way of a wide scattering
-  std::optional<GroundPattern> pattern;   ///< on the last mesh
+  std::vector<const MotionMesh*> meshes;   ///< in the order of `rays`
+  std::vector<Bsdf> bsdfs;                 ///< per mesh; last, if there is a pattern: its second tone
+  std::vector<Bsdf> blurred;               ///< the same, as seen by way of a wide scattering
+  std::vector<std::optional<Bsdf>> lines;  ///< per mesh, of its EdgeLines
+  float pixel = 0;                         ///< m, edge of a pixel of the window one metre ahead of the camera
+  std::optional<GroundPattern> pattern;    ///< on the last mesh
   const LightSet* lights = nullptr;
   int max_bounces = 8;
   float clamp = 0;
@@ -47,7 +49,7 @@ class PathIntegrator {
   const FirstHit& first_hit() const { return first_hit_; }
 
  private:
-  const Bsdf& bsdf_at(const RayHit& hit, const SurfacePoint& point) const;
+  const Bsdf& bsdf_at(const RayHit& hit, const SurfacePoint& point, const Ray& ray) const;
   /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
   void collect(const Ray& ray, bool hit, float distance);
   void add(const Vec3f& radiance);

@@ -24,6 +24,7 @@ constexpr std::array<const char*, 10> kChannelNames = {"R",        "G",        "
 void check_meshes(const Scene& scene) {
   for (const MotionMesh& mesh : scene.meshes) {
     CHECK(!mesh.times.empty());
+    if (mesh.lines && !mesh.lines->drawn.empty()) CHECK(mesh.lines->drawn.size() == mesh.triangles.size());
     for (const MotionMesh::Time& time : mesh.times) {
       CHECK(time.positions.size() == mesh.times.front().positions.size());
       if (!time.normals.empty()) CHECK(time.normals.size() == time.positions.size());
@@ -129,6 +130,14 @@ void add_bsdfs(Picture& picture, const Appearance& appearance, float least_rough
     picture.blurred.emplace_back(blurred);
 }
 
+std::optional<Bsdf> line_bsdf(const MotionMesh& mesh) {
+  if (!mesh.lines) return std::nullopt;
+  Appearance matt;
+  matt.base_color = mesh.lines->color;
+  matt.specular = 0;
+  return Bsdf(matt);
+}
+
 /// Meshes and materials of the scene; the ground comes last.
 Picture make_picture(const Scene& scene, const RenderParams& params, const MotionMesh& ground) {
   Picture picture;
@@ -136,7 +145,12 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
   picture.clamp = params.clamp;
   for (const MotionMesh& mesh : scene.meshes) picture.meshes.push_back(&mesh);
   if (scene.ground) picture.meshes.push_back(&ground);
-  for (const MotionMesh* mesh : picture.meshes) add_bsdfs(picture, mesh->appearance, params.caustic_roughness);
+  for (const MotionMesh* mesh : picture.meshes) {
+    add_bsdfs(picture, mesh->appearance, params.caustic_roughness);
+    picture.lines.push_back(line_bsdf(*mesh));
+  }
+  picture.pixel =
+      2 * camera_frame(scene.camera, params.width, params.height).half_width / static_cast<float>(params.width);
   if (scene.ground && scene.ground->checker > 0) {
     picture.pattern.emplace(*scene.ground, scene.camera);
     Appearance second = scene.ground->appearance;

@@ -7,8 +7,6 @@ namespace softreel {
 
 namespace {
 
-using Corners = std::array<Vec3f, 3>;
-
 Corners corners_of(const std::vector<Vec3f>& values, const Triangle& triangle) {
   return {values[static_cast<std::size_t>(triangle[0])], values[static_cast<std::size_t>(triangle[1])],
           values[static_cast<std::size_t>(triangle[2])]};
@@ -16,6 +14,19 @@ Corners corners_of(const std::vector<Vec3f>& values, const Triangle& triangle) {
 
 void blend(Corners& a, const Corners& b, float t) {
   for (std::size_t k = 0; k < 3; ++k) a[k] += t * (b[k] - a[k]);
+}
+
+/// The step of the mesh's motion that a ray falls into, and how far through it.
+struct Moment {
+  std::size_t step;
+  float share;
+};
+
+Moment moment_of(const MotionMesh& mesh, const Ray& ray) {
+  const std::size_t last = mesh.times.size() - 1;
+  const float at = ray.time * static_cast<float>(last);
+  const std::size_t step = last == 0 ? 0 : std::min(static_cast<std::size_t>(at), last - 1);
+  return {step, at - static_cast<float>(step)};
 }
 
 /// Turns a normal that faces away from the viewer (at silhouettes of coarse meshes) just enough to be seen edge-on.
@@ -38,15 +49,19 @@ Vec3f bulge(const Corners& p, const Corners& n, const std::array<float, 3>& weig
 
 }  // namespace
 
+Corners hit_corners(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) {
+  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(hit.triangle)];
+  const auto [step, t] = moment_of(mesh, ray);
+  Corners p = corners_of(mesh.times[step].positions, triangle);
+  if (t > 0) blend(p, corners_of(mesh.times[step + 1].positions, triangle), t);
+  return p;
+}
+
 SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) {
   const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(hit.triangle)];
-  const std::size_t last = mesh.times.size() - 1;
-  const float at = ray.time * static_cast<float>(last);
-  const std::size_t step = last == 0 ? 0 : std::min(static_cast<std::size_t>(at), last - 1);
+  const auto [step, t] = moment_of(mesh, ray);
   const MotionMesh::Time& opening = mesh.times[step];
-  Corners p = corners_of(opening.positions, triangle);
-  const float t = at - static_cast<float>(step);
-  if (t > 0) blend(p, corners_of(mesh.times[step + 1].positions, triangle), t);
+  const Corners p = hit_corners(mesh, hit, ray);
 
   SurfacePoint point;
   const std::array<float, 3> weights{1 - hit.u - hit.v, hit.u, hit.v};

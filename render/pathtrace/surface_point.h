@@ -1,9 +1,17 @@
 /// The surface at the end of a ray: position, normals and where to start the next ray.
 #pragma once
 
+#include <array>
+
 #include "render/pathtrace/ray_scene.h"
 
 namespace softreel {
+
+/// Positions or normals of the corners of a triangle.
+using Corners = std::array<Vec3f, 3>;
+
+/// Where the corners of the triangle that `ray` hit are at the ray's time.
+Corners hit_corners(const MotionMesh& mesh, const RayHit& hit, const Ray& ray);
 
 struct SurfacePoint {
   Vec3f position;

@@ -14,6 +14,18 @@
 
 namespace softreel {
 
+/// Lines along the edges of a mesh's triangles, for pictures of meshes; the path tracer draws them. They are as wide as
+/// seen by the camera, not in metres, and lie in the surface: light and shadow fall on them.
+struct EdgeLines {
+  float width = 1;  ///< pixels, half of it on either side of the edge
+  /// Most that a line may take of the inscribed circle of a triangle as the camera sees it, from either side; less
+  /// where that circle is smaller than a pixel. So fine meshes get fainter lines instead of black ones.
+  float max_share = 0.2f;
+  Vec3f color = Vec3f::Zero();  ///< linear albedo, matt
+  /// Per triangle, bit k: the edge from corner k to the next has a line. Empty: all have.
+  std::vector<std::uint8_t> drawn;
+};
+
 /// A triangle mesh at one or more equally spaced times of the shutter: times[0] at opening, times.back() at closing.
 struct MotionMesh {
   std::string name;
@@ -24,6 +36,7 @@ struct MotionMesh {
   };
   std::vector<Time> times;  ///< 1: no motion blur
   Appearance appearance;
+  std::optional<EdgeLines> lines;
 };
 
 enum class GroundStyle {

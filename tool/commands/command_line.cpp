@@ -58,6 +58,25 @@ void add_shot_options(CLI::App& command, ShotOptions& options) {
   add_run_options(command, options);
 }
 
+void add_picture_options(CLI::App& command, PictureOptions& options) {
+  CLI::Option* picture =
+      command.add_option("--picture", options.path, "picture to draw, .png; of tetrahedra what lies behind a cut")
+          ->option_text("OUT.png")
+          ->group("Picture");
+  command
+      .add_option("--cut", options.cut,
+                  "x | y | z: through the middle, seen from there; -x | -y | -z: from the other side; x=0.3: at that "
+                  "share of the box; X,Y,Z:NX,NY,NZ: a point and the direction to look against [x or z, whichever way "
+                  "the mesh is shorter]")
+      ->option_text("PLANE")
+      ->needs(picture)
+      ->group("Picture");
+  command.add_option("--picture-size", options.size, "pixels, 16 to 8192 each [1600x1200]")
+      ->option_text("WxH")
+      ->needs(picture)
+      ->group("Picture");
+}
+
 /// All parsed options; only those of the chosen subcommand are read.
 struct Parsed {
   ShotOptions shot;
@@ -123,14 +142,20 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   clean->add_flag("--all", parsed.clean.all, "remove everything that no running job needs")->group("Running");
   clean->add_flag("--dry-run", parsed.clean.shot.dry_run, "only say what would be removed")->group("Running");
   clean->callback([&] { run = [&parsed] { return run_clean(parsed.clean); }; });
+}
 
+void add_mesh_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   CLI::App* inspect =
       app.add_subcommand("inspect", "say what is in a mesh: size, holes, flips, pieces; of tetrahedra their angles");
   inspect
       ->add_option("mesh", parsed.inspect.mesh,
                    "surface mesh in any format assimp reads, or tetrahedra: .mesh (Medit), .msh (Gmsh), .vtk, .vtu")
       ->required();
+  inspect->add_option("--surface", parsed.inspect.surface, "of tetrahedra: measure their distance to this surface");
+  inspect->add_option("--threads", parsed.inspect.threads, "number of threads [all processors]")
+      ->check(CLI::Range(1, 1024));
   inspect->add_flag("--json", parsed.inspect.json, "as JSON");
+  add_picture_options(*inspect, parsed.inspect.picture);
   inspect->callback([&] { run = [&parsed] { return run_inspect(parsed.inspect); }; });
 
   CLI::App* tets = app.add_subcommand("tetrahedralize", "fill a surface with tetrahedra and write them");
@@ -161,6 +186,7 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   tets->add_option("--threads", options.threads, "number of threads [all processors]")->check(CLI::Range(1, 1024));
   tets->add_flag("--quiet", options.quiet, "print warnings and errors only");
   tets->add_flag("--json", options.json, "print the report as JSON");
+  add_picture_options(*tets, options.picture);
   tets->callback([&] { run = [&parsed] { return run_tetrahedralize(parsed.tetrahedralize); }; });
 
   CLI::App* fields = app.add_subcommand("fields", "print the reference of all fields of a shot, or of one");
@@ -201,6 +227,7 @@ int run_command_line(int argc, char** argv) {
   Runner run;
   add_making_commands(app, parsed, run);
   add_looking_commands(app, parsed, run);
+  add_mesh_commands(app, parsed, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

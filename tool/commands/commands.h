@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tool/commands/session.h"
+#include "tool/report/studio.h"
 
 namespace softreel {
 
@@ -67,10 +68,13 @@ int run_clean(const CleanOptions& options);
 
 struct InspectOptions {
   std::string mesh;
+  std::string surface;  ///< that tetrahedra are to follow; empty: their distance to it is not measured
+  PictureOptions picture;
+  int threads = 0;
   bool json = false;
 };
 
-/// Says what is in a surface mesh.
+/// Says what is in a surface mesh or in tetrahedra, and draws them if asked.
 int run_inspect(const InspectOptions& options);
 
 struct TetrahedralizeOptions {
@@ -79,9 +83,11 @@ struct TetrahedralizeOptions {
   long tets = 0;
   int threads = 0;
   bool optimize = false, quiet = false, json = false;
+  PictureOptions picture;
 };
 
-/// Fills a surface and writes the tetrahedra; given tetrahedra are optimized or written in another format only.
+/// Fills a surface, writes the tetrahedra, and draws them if asked; given tetrahedra are only optimized, drawn, or
+/// written in another format.
 int run_tetrahedralize(const TetrahedralizeOptions& options);
 
 }  // namespace softreel

@@ -16,6 +16,7 @@
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/tetrahedralize.h"
 #include "tool/commands/commands.h"
+#include "tool/report/cut_picture.h"
 #include "tool/shot/codecs.h"
 #include "tool/stages/atomic_file.h"
 
@@ -158,12 +159,19 @@ Result fill(const TetrahedralizeOptions& options, const Threads& threads, const 
   result.seconds = seconds_since(start);
   if (params.mode == TetMode::Conforming) result.deviation = measure_deviation(result.surface, result.mesh, threads);
   return result;
-}
+
+  /// Draws the picture that was asked for; said in a line of the text report.
+  void add_picture(const TetrahedralizeOptions& options, const TetMesh& mesh, const Threads& threads) {
+    if (options.picture.path.empty()) return;
+    const std::string shown = draw_cut_picture(mesh, options.picture, threads);
+    if (!options.json) std::printf("  picture: %s\n", shown.c_str());
+  }
 
 }  // namespace
 
 int run_tetrahedralize(const TetrahedralizeOptions& options) {
   check_extension(options.output);
+  check_cut_picture(options.picture);
   Console console(options.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0);
   const Threads threads(options.threads);
   const bool is_given = is_tet_mesh_file(options.mesh);
@@ -175,6 +183,7 @@ int run_tetrahedralize(const TetrahedralizeOptions& options) {
   } else {
     print_text(options, result);
   }
+  add_picture(options, result.mesh, threads);
   return 0;
 }
 
