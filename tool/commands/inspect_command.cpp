@@ -12,6 +12,7 @@
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
 #include "tool/commands/commands.h"
+#include "tool/report/json_text.h"
 #include "tool/stages/atomic_file.h"
 
 namespace softreel {
@@ -42,7 +43,7 @@ std::string facts_json(const InspectOptions& options, const MeshFacts& facts, co
                                        {"max", list(facts.bounds.max)},
                                        {"groups", groups},
                                        {"repairs", repairs}};
-  return json.dump(1);
+  return json_text(json);
 }
 
 /// What is in a file of tetrahedra.
@@ -79,7 +80,7 @@ void print_tets_json(const InspectOptions& options, const TetFacts& facts) {
                                        {"max_dihedral_deg", facts.quality.max_dihedral},
                                        {"min", list(facts.box.min)},
                                        {"max", list(facts.box.max)}};
-  std::printf("%s\n", json.dump(1).c_str());
+  std::printf("%s\n", json_text(json).c_str());
 }
 
 int inspect_tets(const InspectOptions& options, const std::string& extension, const Log& log) {

@@ -15,6 +15,7 @@
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/tetrahedralize.h"
 #include "tool/commands/commands.h"
+#include "tool/report/json_text.h"
 #include "tool/stages/atomic_file.h"
 
 namespace softreel {
@@ -67,7 +68,7 @@ std::string to_json(const TetrahedralizeOptions& options, const Result& result) 
                                        {"distance", result.deviation.two_way()},
                                        {"distance_share_of_diagonal", result.deviation.two_way() / diagonal},
                                        {"seconds", result.seconds}};
-  return json.dump(1);
+  return json_text(json);
 }
 
 void print_text(const TetrahedralizeOptions& options, const Result& result) {
