@@ -9,6 +9,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 option(SOFTREEL_BUILD_TESTS "build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(SOFTREEL_BUILD_BENCHMARKS "build tests/benchmark" OFF)
+option(SOFTREEL_BUILD_FUZZERS "tests/fuzz for libFuzzer, which needs clang" OFF)
 option(SOFTREEL_WERROR "warnings are errors" OFF)
 option(SOFTREEL_PRECOMPILE "compile common headers once" ON)
 set(SOFTREEL_SANITIZE "" CACHE STRING "sanitizers, for example address,undefined")

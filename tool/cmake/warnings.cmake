@@ -3,6 +3,10 @@ add_library(softreel_warnings INTERFACE)
 target_compile_options(softreel_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
 # g++ 12 warns wrongly about std::string inside of std::optional and of std::string + (its bugs 105562 and 105329).
 target_compile_options(softreel_warnings INTERFACE -Wno-maybe-uninitialized -Wno-restrict)
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  # CHECK catches its operands by an operator << of higher precedence on purpose.
+  target_compile_options(softreel_warnings INTERFACE -Wno-unknown-warning-option -Wno-overloaded-shift-op-parentheses)
+endif()
 if(SOFTREEL_WERROR)
   target_compile_options(softreel_warnings INTERFACE -Werror)
 endif()
@@ -14,4 +18,11 @@ if(SOFTREEL_SANITIZE)
   target_compile_options(softreel_numerics INTERFACE -fsanitize=${SOFTREEL_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=undefined)
   target_link_options(softreel_numerics INTERFACE -fsanitize=${SOFTREEL_SANITIZE})
+endif()
+if(SOFTREEL_BUILD_FUZZERS)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "SOFTREEL_BUILD_FUZZERS is ON but ${CMAKE_CXX_COMPILER_ID} has no libFuzzer. "
+                        "Configure with -DCMAKE_CXX_COMPILER=clang++ (packages clang, libclang-rt-14-dev).")
+  endif()
+  target_compile_options(softreel_numerics INTERFACE -fsanitize=fuzzer-no-link)
 endif()

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "tool/commands/commands.h"
+#include "tool/report/json_text.h"
 #include "tool/stages/process.h"
 
 namespace softreel {
@@ -38,7 +39,7 @@ void print_summary(const std::vector<Outcome>& outcomes, bool json, bool quiet) 
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Outcome& outcome : outcomes)
       list.push_back({{"shot", outcome.shot}, {"status", outcome.status}, {"seconds", outcome.seconds}});
-    std::printf("%s\n", nlohmann::ordered_json{{"command", "batch"}, {"shots", list}}.dump(1).c_str());
+    std::printf("%s\n", json_text(nlohmann::ordered_json{{"command", "batch"}, {"shots", list}}).c_str());
   } else if (!quiet) {
     for (const Outcome& outcome : outcomes)
       std::printf("  %-8s %10s  %s\n", outcome.status == 0 ? "done" : "FAILED",

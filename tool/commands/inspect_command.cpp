@@ -14,6 +14,7 @@
 #include "core/tetmesh/tet_quality.h"
 #include "tool/commands/commands.h"
 #include "tool/report/cut_picture.h"
+#include "tool/report/json_text.h"
 #include "tool/report/surface_picture.h"
 
 namespace softreel {
@@ -44,7 +45,7 @@ std::string facts_json(const InspectOptions& options, const MeshFacts& facts, co
                                        {"max", list(facts.bounds.max)},
                                        {"groups", groups},
                                        {"repairs", repairs}};
-  return json.dump(1);
+  return json_text(json);
 }
 
 /// What is in a file of tetrahedra.
@@ -93,7 +94,7 @@ void print_tets_json(const InspectOptions& options, const TetFacts& facts) {
     json["distance"] = facts.deviation->two_way();
     json["distance_share_of_diagonal"] = facts.deviation->two_way() / facts.diagonal;
   }
-  std::printf("%s\n", json.dump(1).c_str());
+  std::printf("%s\n", json_text(json).c_str());
 }
 
 void print_tets_text(const InspectOptions& options, const TetFacts& facts) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tool/commands/commands.h"
+#include "tool/report/json_text.h"
 #include "tool/stages/cache_use.h"
 #include "tool/stages/shot_status.h"
 
@@ -82,7 +83,7 @@ int run_status(const StatusOptions& options) {
         {"shot", shot.path},         {"output", shot.output.directory},           {"done", done},
         {"stages", stages},          {"cache", session.context().cache.folder()}, {"cache_bytes", bytes},
         {"cache_limit_bytes", limit}};
-    std::printf("%s\n", json.dump(1).c_str());
+    std::printf("%s\n", json_text(json).c_str());
   } else {
     std::printf("%s (%s) in %s: %s\n", shot.settings.name.c_str(), shot.path.c_str(), shot.output.directory.c_str(),
                 done ? "all done" : "not all done");

@@ -17,6 +17,7 @@
 #include "core/tetmesh/tetrahedralize.h"
 #include "tool/commands/commands.h"
 #include "tool/report/cut_picture.h"
+#include "tool/report/json_text.h"
 #include "tool/shot/codecs.h"
 #include "tool/stages/atomic_file.h"
 
@@ -76,7 +77,7 @@ std::string to_json(const TetrahedralizeOptions& options, const Result& result) 
   }
   json["repairs"] = result.repairs;
   json["seconds"] = result.seconds;
-  return json.dump(1);
+  return json_text(json);
 }
 
 /// What the sizes are: of one lattice, of several, or whatever was given.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tool/report/console.h"
+#include "tool/report/json_text.h"
 #include "tool/stages/stage_names.h"
 
 namespace softreel {
@@ -208,7 +209,7 @@ std::string to_json(const RunReport& report) {
   json["made"] = report.made;
   for (const auto& [name, entry] : report.stages)
     json["stages"][name] = {{"seconds", entry.seconds}, {"calls", entry.calls}};
-  return json.dump(1);
+  return json_text(json);
 }
 
 std::string version_text() {

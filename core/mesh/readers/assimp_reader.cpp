@@ -6,7 +6,6 @@
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
@@ -16,10 +15,11 @@
 namespace softreel::detail {
 namespace {
 
-/// Puts the meshes of an assimp scene together in the order of its nodes.
+/// Puts the meshes of an assimp scene together in the order of its nodes. Checks what it follows: assimp's own
+/// validation also refuses sound meshes, for the sake of lights and cameras.
 class SceneMerger {
  public:
-  explicit SceneMerger(const aiScene& scene) : scene_(scene) {}
+  SceneMerger(const aiScene& scene, const std::string& path) : scene_(scene), path_(path) {}
 
   SurfaceMesh merge() {
     if (scene_.mRootNode != nullptr) add_node(*scene_.mRootNode, aiMatrix4x4());
@@ -35,8 +35,24 @@ class SceneMerger {
  private:
   void add_node(const aiNode& node, const aiMatrix4x4& parent) {
     const aiMatrix4x4 transform = parent * node.mTransformation;
-    for (unsigned m = 0; m < node.mNumMeshes; ++m) add_mesh(*scene_.mMeshes[node.mMeshes[m]], transform, node);
-    for (unsigned c = 0; c < node.mNumChildren; ++c) add_node(*node.mChildren[c], transform);
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+      const unsigned number = node.mMeshes[m];
+      if (number >= scene_.mNumMeshes || scene_.mMeshes[number] == nullptr)
+        throw unusable_file(path_,
+                            fmt::format("a node has mesh {}, but the file has {} meshes", number, scene_.mNumMeshes),
+                            "Export it again, best as OBJ or PLY");
+      add_mesh(*scene_.mMeshes[number], transform, node);
+    }
+    for (unsigned c = 0; c < node.mNumChildren; ++c)
+      if (node.mChildren[c] != nullptr) add_node(*node.mChildren[c], transform);
+  }
+
+  unsigned checked(unsigned corner, const aiMesh& part) const {
+    if (corner < part.mNumVertices) return corner;
+    throw unusable_file(
+        path_,
+        fmt::format("a face of mesh '{}' refers to vertex {} of {}", part.mName.C_Str(), corner, part.mNumVertices),
+        "Export it again, best as OBJ or PLY");
   }
 
   void add_mesh(const aiMesh& part, const aiMatrix4x4& transform, const aiNode& node) {
@@ -56,7 +72,7 @@ class SceneMerger {
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
       for (unsigned k = 0; k < face.mNumIndices; ++k) {
-        const auto corner = static_cast<Index>(face.mIndices[mirrored ? face.mNumIndices - 1 - k : k]);
+        const auto corner = static_cast<Index>(checked(face.mIndices[mirrored ? face.mNumIndices - 1 - k : k], part));
         polygons.corner_vertices.push_back(first_vertex + corner);
         polygons.corner_textures.push_back(has_textures ? first_texture + corner : -1);
       }
@@ -82,9 +98,21 @@ class SceneMerger {
   }
 
   const aiScene& scene_;
+  const std::string& path_;
   SurfaceMesh mesh_;
   std::map<std::string, Index> group_of_;
 };
+
+/// What assimp says of a file that it could not read, in our words where it says nothing of the file.
+Error read_error(const std::string& path, std::string_view said) {
+  const std::string_view problem = trimmed(said);
+  if (problem.starts_with("No suitable reader"))
+    return unusable_file(path, "no reader knows this format, neither by the name's ending nor by the first bytes",
+                         "Export the mesh in one of these formats");
+  return unusable_file(path,
+                       fmt::format("the mesh cannot be read: {}", problem.substr(0, problem.find_last_not_of('.') + 1)),
+                       "Export it again, best as OBJ or PLY");
+}
 
 }  // namespace
 
@@ -95,20 +123,18 @@ SurfaceMesh softreel_read_with_assimp(const std::string& path, const Log& log) {
   const aiScene* scene = nullptr;
   std::string problem;
   try {
-    scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
+    scene = importer.ReadFile(path, 0);
     problem = importer.GetErrorString();
   } catch (const std::exception& error) {
     problem = error.what();
   }
-  if (scene == nullptr)
-    throw unusable_file(path, fmt::format("the mesh cannot be read: {}", trimmed(problem)),
-                        "Export it again, best as OBJ or PLY");
+  if (scene == nullptr) throw read_error(path, problem);
   for (unsigned m = 0; m < scene->mNumMeshes; ++m)
-    if (scene->mMeshes[m]->HasBones() || scene->mMeshes[m]->mNumAnimMeshes > 0) {
+    if (scene->mMeshes[m] != nullptr && (scene->mMeshes[m]->HasBones() || scene->mMeshes[m]->mNumAnimMeshes > 0)) {
       log.warn(fmt::format("{}: bones and shape keys are left out; the mesh is taken in its rest shape", path));
       break;
     }
-  return SceneMerger(*scene).merge();
+  return SceneMerger(*scene, path).merge();
 }
 
 }  // namespace softreel::detail

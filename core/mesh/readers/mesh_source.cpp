@@ -11,10 +11,39 @@ namespace softreel::detail {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Length of the UTF-8 sequence of a printable character that `text` starts with; 0 if there is none.
+std::size_t printable_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return byte(0) >= 0x20 && byte(0) != 0x7f ? 1 : 0;
+  const std::size_t length = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+  if (byte(0) < 0xc2 || byte(0) > 0xf4 || length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k)
+    if ((byte(k) & 0xc0) != 0x80) return 0;
+  return length;
+}
+
+}  // namespace
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 300;
+  std::string line;
+  while (!text.empty() && line.size() < kMost) {
+    const std::size_t length = printable_length(text);
+    if (length > 0)
+      line += text.substr(0, length);
+    else
+      line += '?';
+    text.remove_prefix(length > 0 ? length : 1);
+  }
+  return text.empty() ? line : line + "...";
+}
+
 Error unusable_file(const std::string& path, const std::string& problem, const std::string& advice) {
   return input_error(
       fmt::format("{}: {}.\n  Accepted: a mesh file (.obj, .ply, .off, .stl, .gltf, .glb, .fbx, .dae, ...). {}.", path,
-                  problem, advice));
+                  shown(problem), advice));
 }
 
 void require_mesh_file(const std::string& path) {
@@ -46,7 +75,8 @@ std::string lower_extension(const std::string& path) {
 
 Error broken_file(const MeshSource& source, const std::string& place, const std::string& problem,
                   const std::string& accepted, const std::string& advice) {
-  return input_error(fmt::format("{}{}: {}.\n  Accepted: {}. {}.", source.name, place, problem, accepted, advice));
+  return input_error(
+      fmt::format("{}{}: {}.\n  Accepted: {}. {}.", source.name, place, shown(problem), accepted, advice));
 }
 
 Error bad_index(const MeshSource& source, const std::string& place, const std::string& what, const std::string& value,

@@ -17,7 +17,10 @@ struct MeshSource {
   std::string_view bytes;
 };
 
-/// The error of a file that gives no mesh at all, whatever its format.
+/// Text out of a file as messages may show it: one line of at most 300 bytes, '?' for control and other odd bytes.
+std::string shown(std::string_view text);
+
+/// The error of a file that gives no mesh at all, whatever its format. Here and below, `problem` is shown().
 Error unusable_file(const std::string& path, const std::string& problem, const std::string& advice);
 
 /// Throws input_error for what is no regular file, or empty.

@@ -131,7 +131,7 @@ class StlTextReader {
 SurfaceMesh read_stl(const MeshSource& source, const Log& log) {
   const std::string_view bytes = source.bytes;
   const std::uint64_t announced = bytes.size() < kHeaderBytes ? 0 : announced_bytes(bytes);
-  if (announced == bytes.size()) return read_binary(bytes);
+  if (announced > 0 && announced == bytes.size()) return read_binary(bytes);
   std::string_view text = bytes;
   if (take_word(text) == "solid") return StlTextReader(source).read();
   if (announced > kHeaderBytes && announced < bytes.size()) {
