@@ -123,10 +123,8 @@ void require_all_parts(const StuffedMesh& stuffed, const SurfaceDistance& distan
   for (std::size_t p = 0; p < present.size(); ++p) {
     if (present[p]) continue;
     const SurfacePart& part = parts.parts[p];
-    const Vec3 center = part.box.center();
-    const std::string where =
-        fmt::format("{} near ({:.4g}, {:.4g}, {:.4g})", part.name, center[0], center[1], center[2]);
-    if (std::abs(part.volume) <= 1e-6 * std::pow(part.area, 1.5)) {
+    const std::string where = part.place();
+    if (part.is_flat()) {
       log.warn(fmt::format("body '{}': {} encloses no volume and has no tetrahedra", name, where));
       continue;
     }

@@ -73,6 +73,16 @@ void join_near_rims(const SurfaceMesh& surface, const std::vector<Index>& rims, 
 
 }  // namespace
 
+bool SurfacePart::is_flat() const {
+  constexpr double kFlat = 1e-6;  // of the area to the power of 3/2; a ball has 0.094
+  return std::abs(volume) <= kFlat * std::pow(area, 1.5);
+}
+
+std::string SurfacePart::place() const {
+  const Vec3 center = box.center();
+  return fmt::format("{} near ({:.4g}, {:.4g}, {:.4g})", name, center[0], center[1], center[2]);
+}
+
 double SurfaceParts::area() const {
   double sum = 0;
   for (const SurfacePart& part : parts) sum += part.area;

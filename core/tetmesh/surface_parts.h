@@ -17,6 +17,11 @@ struct SurfacePart {
   Bounds box;
   bool open = false;  ///< has edges that are not used as often in one direction as in the other
   std::string name;   ///< for messages: "part 2 of 3 (group 'eye_L', 320 triangles)"
+
+  /// Encloses nothing worth a tetrahedron.
+  bool is_flat() const;
+  /// For messages: the name and where it is, "part 2 of 3 (320 triangles) near (0, 1, 0)".
+  std::string place() const;
 };
 
 struct SurfaceParts {

@@ -5,16 +5,16 @@
 
 #include <fmt/format.h>
 
-#include "core/base/check.h"
 #include "core/base/error.h"
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
-#include "core/tetmesh/embedded_lattice.h"
 #include "core/tetmesh/error_budget.h"
 #include "core/tetmesh/graded_stuffing.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
 #include "core/tetmesh/mesh_pieces.h"
-#include "core/tetmesh/sheet_shells.h"
+#include "core/tetmesh/mesh_promises.h"
+#include "core/tetmesh/solids.h"
+#include "core/tetmesh/surface_preparation.h"
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/thin_parts.h"
 
@@ -30,34 +30,46 @@ constexpr double kTetsPerCell = 12.0, kTetsPerSquare = 1.6, kEmbeddedTetsPerSqua
 /// Shift of the lattice in embedded mode, edges: the faces of boxes are not to lie in those of tetrahedra.
 const Vec3 kOffGrid(0.1237, 0.3711, 0.2339);
 
-/// The dihedral angles of the lattice's tetrahedra are 60 and 90 degrees, but for round-off.
-constexpr double kAngleRoundOff = 0.01;
+/// What meshes promise; whole lattice tetrahedra have 60 and 90 degrees, but for round-off.
+constexpr AngleBounds kUniformAngles{kMinDihedral, kMaxDihedral}, kGradedAngles{kMinGradedDihedral, kMaxGradedDihedral},
+    kCellAngles{59.99, 90.01};
 
 /// How far the number of elements may be from the wanted one.
 constexpr double kCountTolerance = 0.05;
 
 /// One body on its way; borrowed from the caller of tetrahedralize.
 struct Job {
-  const SurfaceMesh& surface;
-  const SurfaceParts& parts;
-  const Bounds& box;
+  const PreparedSurface& prepared;
+  const std::vector<Solid>& solids;  ///< of the prepared surface; conforming mode
+  const TetrahedralizeParams& params;
   const std::string& name;
   const Threads& threads;
   const Log& log;
   StageTimes& times;
-  TetMode mode;
-  const std::vector<CarriedPoint>& carried;  // embedded mode: the vertices of the surface as it was given
 
-  double tets_per_square() const { return mode == TetMode::Embedded ? kEmbeddedTetsPerSquare : kTetsPerSquare; }
+  bool is_embedded() const { return params.mode == TetMode::Embedded; }
+  double tets_per_square() const { return is_embedded() ? kEmbeddedTetsPerSquare : kTetsPerSquare; }
+};
+
+/// The tetrahedra of a body on their way: of each solid apart, or of all in embedded mode.
+struct Filling {
+  std::vector<StuffedMesh> meshes;
+  double edge = 0;  ///< the finest, m
+
+  std::size_t tets() const {
+    std::size_t sum = 0;
+    for (const StuffedMesh& stuffed : meshes) sum += stuffed.mesh.tets.size();
+    return sum;
+  }
 };
 
 double predicted_tets(const Job& job, double edge) {
-  return kTetsPerCell * job.parts.volume() / (edge * edge * edge) +
-         job.tets_per_square() * job.parts.area() / (edge * edge);
+  return kTetsPerCell * job.prepared.parts.volume() / (edge * edge * edge) +
+         job.tets_per_square() * job.prepared.parts.area() / (edge * edge);
 }
 
 void require_size(const Job& job, double edge) {
-  const double reach = job.box.size().maxCoeff() / edge;
+  const double reach = job.prepared.box.size().maxCoeff() / edge;
   const double tets = predicted_tets(job, edge);
   if (reach < 0.45 * kMaxLatticeCoordinate && tets < kMaxTets) return;
   throw input_error(fmt::format(
@@ -69,8 +81,9 @@ void require_size(const Job& job, double edge) {
 /// Covers the surface with whole lattice tetrahedra.
 StuffedMesh cover_surface(const Job& job, double edge, const Vec3& shift) {
   const ScopedStage stage(job.times, "tetrahedralize/lattice");
-  const LatticeFrame frame{job.box.center() + edge * (shift + kOffGrid), edge};
-  EmbeddedLattice cover = cover_with_lattice(job.surface, job.parts, frame, job.carried, job.threads);
+  const PreparedSurface& prepared = job.prepared;
+  const LatticeFrame frame{prepared.box.center() + edge * (shift + kOffGrid), edge};
+  EmbeddedLattice cover = cover_with_lattice(prepared.surface, prepared.parts, frame, prepared.carried, job.threads);
   job.log.info(fmt::format(
       "body '{}': embedded in {} whole lattice tetrahedra, {} of them cut by the surface, {} of them copies "
       "where parts of the body lie in one",
@@ -81,21 +94,24 @@ StuffedMesh cover_surface(const Job& job, double edge, const Vec3& shift) {
   return {std::move(cover.mesh), {}, {}};
 }
 
-/// Stuffs, mends and cleans, or covers; no promises checked yet.
-StuffedMesh fill_surface(const Job& job, double edge, const Vec3& shift = Vec3::Zero()) {
-  require_size(job, edge);
-  if (job.mode == TetMode::Embedded) return cover_surface(job, edge, shift);
-  const LatticeFrame frame{job.box.center() + edge * shift, edge};
+/// Makes what stuffing gives one solid body: a manifold without crumbs, with something of every part.
+void mend_solid(const Job& job, const Solid& solid, const SurfaceDistance& distance, StuffedMesh& stuffed) {
+  drop_crumbs(stuffed, distance, solid.parts, job.name, job.log);
+  require_all_parts(stuffed, distance, solid.parts, job.name, job.log);
+}
+
+/// Stuffs one solid; no promises checked yet.
+StuffedMesh stuff_solid(const Job& job, const Solid& solid, const LatticeFrame& frame) {
   SurfaceDistance distance = [&] {
     const ScopedStage stage(job.times, "tetrahedralize/distance");
-    return measure_distance(job.surface.positions, job.surface.triangles, frame, job.threads);
+    return measure_distance(solid.surface.positions, solid.surface.triangles, frame, job.threads);
   }();
   const ScopedStage stage(job.times, "tetrahedralize/lattice");
-  if (const Index taken_in = bridge_thin_parts(distance, job.surface, job.parts); taken_in > 0)
+  if (const Index taken_in = bridge_thin_parts(distance, solid.surface, solid.parts); taken_in > 0)
     job.log.info(
         fmt::format("body '{}': what is thinner than the lattice was thickened to about its edge ({:.4g} m) at {} "
                     "nodes, so that it holds together. A smaller edge or more tets follow the surface there.",
-                    job.name, edge, taken_in));
+                    job.name, frame.spacing, taken_in));
   StuffedMesh stuffed = stuff_isosurface(distance.lattice, job.threads);
   const BoundaryMending mending = mend_boundary(stuffed);
   if (mending.copied_nodes > 0 || mending.removed_tets > 0)
@@ -103,43 +119,32 @@ StuffedMesh fill_surface(const Job& job, double edge, const Vec3& shift = Vec3::
         fmt::format("body '{}': {} nodes where parts touched at a vertex or edge were parted, {} tetrahedra where "
                     "the body touched itself were removed",
                     job.name, mending.copied_nodes, mending.removed_tets));
-  drop_crumbs(stuffed, distance, job.parts, job.name, job.log);
-  require_all_parts(stuffed, distance, job.parts, job.name, job.log);
+  mend_solid(job, solid, distance, stuffed);
   order_nodes(stuffed);
   return stuffed;
 }
 
-/// Dihedral angles that a mesh promises, degrees.
-struct AngleBounds {
-  double min = kMinDihedral, max = kMaxDihedral;
-};
-
-/// The promises of the header, tested on every mesh.
-void require_quality(const Job& job, const TetMesh& mesh, const AngleBounds& bounds) {
-  const ScopedStage stage(job.times, "tetrahedralize/check");
-  const auto nodes = static_cast<Index>(mesh.nodes.size());
-  for (const Tet& tet : mesh.tets)
-    for (const Index node : tet) {
-      CHECK(node >= 0);
-      CHECK(node < nodes);
-    }
-  const TetQuality quality = measure_quality(mesh, job.threads);
-  if (quality.min_volume > 0 && quality.min_dihedral >= bounds.min && quality.max_dihedral <= bounds.max) return;
-  throw work_error(fmt::format(
-      "body '{}': a tetrahedron is worse than promised: volume {:.3g} m^3 (element {}), dihedral angles {:.4g} to "
-      "{:.4g} "
-      "degrees (elements {}, {}). Accepted: positive volume, {} to {} degrees. The body may be too far from the origin "
-      "for its size; move it nearer, or use another edge length.",
-      job.name, quality.min_volume, quality.min_volume_tet, quality.min_dihedral, quality.max_dihedral,
-      quality.min_dihedral_tet, quality.max_dihedral_tet, bounds.min, bounds.max));
+/// Fills with one edge length.
+Filling fill_with_edge(const Job& job, double edge, const Vec3& shift = Vec3::Zero()) {
+  require_size(job, edge);
+  Filling filling;
+  filling.edge = edge;
+  if (job.is_embedded()) {
+    filling.meshes.push_back(cover_surface(job, edge, shift));
+    return filling;
+  }
+  const LatticeFrame frame{job.prepared.box.center() + edge * shift, edge};
+  for (const Solid& solid : job.solids) filling.meshes.push_back(stuff_solid(job, solid, frame));
+  return filling;
 }
 
 /// The edge that gives `tets` by the prediction; it falls monotonously with the edge, so halving finds it.
 double edge_for_tets(const Job& job, double tets) {
-  double low = 0, high = std::sqrt((job.tets_per_square() * job.parts.area() +
-                                    kTetsPerCell * std::pow(job.parts.volume(), 2.0 / 3.0)) /
-                                   tets) *
-                         8.0;
+  const SurfaceParts& parts = job.prepared.parts;
+  double low = 0,
+         high = std::sqrt((job.tets_per_square() * parts.area() + kTetsPerCell * std::pow(parts.volume(), 2.0 / 3.0)) /
+                          tets) *
+                8.0;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
     (predicted_tets(job, middle) > tets ? low : high) = middle;
@@ -171,63 +176,68 @@ Vec3 lattice_shift(int step) {
 }
 
 /// Predicts an edge, fills, and corrects it by the cube root of the count's error until that is within 5 %.
-StuffedMesh fill_with_count(const Job& job, double wanted) {
+Filling fill_with_count(const Job& job, double wanted) {
   double edge = edge_for_tets(job, wanted);
-  StuffedMesh best;
+  Filling best;
   WaitingLog best_lines;
   double best_error = 1e300;
   constexpr int kSteps = 6;
   for (int step = 0; step < kSteps; ++step) {
     WaitingLog lines;
     const Log log = lines.sink();
-    StuffedMesh stuffed =
-        fill_surface({job.surface, job.parts, job.box, job.name, job.threads, log, job.times, job.mode, job.carried},
-                     edge, lattice_shift(std::max(0, step - 1)));
-    const auto count = static_cast<double>(stuffed.mesh.tets.size());
+    Filling filling = fill_with_edge({job.prepared, job.solids, job.params, job.name, job.threads, log, job.times},
+                                     edge, lattice_shift(std::max(0, step - 1)));
+    const auto count = static_cast<double>(filling.tets());
     const double error = std::abs(count / wanted - 1.0);
     if (error < best_error) {
       best_error = error;
-      best = std::move(stuffed);
+      best = std::move(filling);
       best_lines = lines;
     }
     if (best_error <= kCountTolerance) break;
     edge *= std::cbrt(std::max(count, 1.0) / wanted);
   }
   best_lines.pass_on(job.log);
-  if (best_error > kCountTolerance && !best.mesh.tets.empty())
+  if (best_error > kCountTolerance && best.tets() > 0)
     job.log.warn(
         fmt::format("body '{}': {} tetrahedra instead of tets = {}: so few follow the lattice in jumps. Set edge "
                     "instead for a chosen size.",
-                    job.name, best.mesh.tets.size(), wanted));
+                    job.name, best.tets(), wanted));
   return best;
 }
 
-/// Fills with graded sizes; says where the budget could not be kept.
-StuffedMesh fill_with_error(const Job& job, double error) {
-  ErrorBudgetParams params;
-  params.error = error;
-  require_size(job, params.base_edge * error);
+/// Fills one solid with graded sizes; says where the budget could not be kept.
+StuffedMesh grade_solid(const Job& job, const Solid& solid, const ErrorBudgetParams& params) {
   GradedFilling filling = [&] {
     const ScopedStage stage(job.times, "tetrahedralize/lattice");
-    return fill_to_error(job.surface, params, job.threads);
+    return fill_to_error(solid.surface, params, job.threads);
   }();
   StuffedMesh& stuffed = filling.stuffed;
-  if (stuffed.mesh.tets.empty()) return std::move(stuffed);
   stuffed.mesh.lattice.spacing = filling.finest_edge;  // what is small, and what is too thin, is judged by that
-  drop_crumbs(stuffed, filling.distance, job.parts, job.name, job.log);
-  require_all_parts(stuffed, filling.distance, job.parts, job.name, job.log);
+  mend_solid(job, solid, filling.distance, stuffed);
   stuffed.mesh.lattice = {};  // none of one size: the hierarchy finds coarse lattices of its own, and converges better
   order_nodes(stuffed);
   const ScopedStage stage(job.times, "tetrahedralize/check");
-  if (const double reached = measure_deviation(job.surface, stuffed.mesh, job.threads).two_way(); reached > error)
+  if (const double reached = measure_deviation(solid.surface, stuffed.mesh, job.threads).two_way();
+      reached > params.error)
     job.log.warn(
         fmt::format("body '{}': the tetrahedra keep to {:.4g} m of the surface, not to error = {:.4g} m: even edges of "
                     "{:.4g} m do not reach all of it. Accepted: this mesh, as it is. Close or thicken what is thin.",
-                    job.name, reached, error, filling.finest_edge));
+                    job.name, reached, params.error, filling.finest_edge));
   return std::move(stuffed);
 }
 
-void require_params(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name) {
+Filling fill_with_error(const Job& job, double error) {
+  ErrorBudgetParams params;
+  params.error = error;
+  require_size(job, params.base_edge * error);
+  Filling filling;
+  filling.edge = params.base_edge * error;
+  for (const Solid& solid : job.solids) filling.meshes.push_back(grade_solid(job, solid, params));
+  return filling;
+}
+
+void require_params(const TetrahedralizeParams& params, const std::string& name) {
   if ((params.edge > 0) + (params.tets > 0) + (params.error > 0) != 1)
     throw input_error(
         fmt::format("body '{}': edge = {} m, tets = {}, error = {} m: exactly one of the sizes must be set. Accepted: "
@@ -238,121 +248,81 @@ void require_params(const SurfaceMesh& surface, const TetrahedralizeParams& para
         fmt::format("body '{}': error = {} m with mode = \"embedded\": whole lattice tetrahedra do not follow the "
                     "surface at all. Accepted: tets or edge with embedded, error with conforming. Set tets instead.",
                     name, params.error));
-  if (surface.triangles.empty())
-    throw input_error(
-        fmt::format("body '{}': its surface has no triangles, so there is nothing to fill. Accepted: a "
-                    "surface that encloses a volume. Check the mesh file.",
-                    name));
 }
 
-/// An open sheet has no inside; what its winding numbers would make of it is nobody's wish.
-void require_inside(const Job& job) {
-  const Index sheet = find_sheet(job.surface, job.parts);
-  if (sheet < 0) return;
-  const SurfacePart& part = job.parts.parts[static_cast<std::size_t>(sheet)];
-  const Vec3 center = part.box.center();
-  throw input_error(fmt::format(
-      "body '{}': {} near ({:.4g}, {:.4g}, {:.4g}) is an open sheet: it encloses nothing. Accepted: a "
-      "surface that encloses a volume, or an open sheet with a thickness. Set thickness, close the surface, "
-      "or take the part out of it.",
-      job.name, part.name, center[0], center[1], center[2]));
+/// Solids with a volume; of the others, parts by parts, is said that nothing can be filled there.
+std::vector<Solid> take_solids(const PreparedSurface& prepared, const std::string& name, const Log& log) {
+  std::vector<Solid> solids =
+      split_solids(prepared.surface, prepared.parts, find_solids(prepared.surface, prepared.parts));
+  std::erase_if(solids, [&](const Solid& solid) {
+    const std::vector<SurfacePart>& parts = solid.parts.parts;
+    const bool flat = std::all_of(parts.begin(), parts.end(), [](const SurfacePart& part) { return part.is_flat(); });
+    for (const SurfacePart& part : parts)
+      if (flat) log.warn(fmt::format("body '{}': {} encloses no volume and has no tetrahedra", name, part.place()));
+    return flat;
+  });
+  return solids;
 }
 
-/// Leaves out the vertices that no triangle uses: what looks at vertices is not to see them. Returns the new number of
-/// each vertex, -1 for those left out.
-std::vector<Index> drop_unused_vertices(SurfaceMesh& mesh) {
-  std::vector<Index> number(mesh.positions.size(), -1);
-  for (const Triangle& triangle : mesh.triangles)
-    for (const Index v : triangle) number[static_cast<std::size_t>(v)] = 0;
-  std::vector<Vec3> used;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] < 0) continue;
-    number[v] = static_cast<Index>(used.size());
-    used.push_back(mesh.positions[v]);
+/// Draws each solid's boundary to its own surface, betters its angles if asked, and looks whether it is one piece.
+void finish_solids(const Job& job, Filling& filling) {
+  for (std::size_t s = 0; s < filling.meshes.size(); ++s) {
+    const Solid& solid = job.solids[s];
+    StuffedMesh& stuffed = filling.meshes[s];
+    if (job.params.error == 0) {
+      const ScopedStage stage(job.times, "tetrahedralize/fit");
+      fit_boundary(stuffed, solid.surface, {}, job.threads);
+    }
+    if (job.params.optimize) {
+      const ScopedStage stage(job.times, "tetrahedralize/optimize");
+      const AngleImprovement done = improve_angles(stuffed.mesh, &solid.surface, {}, job.threads);
+      job.log.info(fmt::format("body '{}': {}", job.name, describe(done)));
+    }
+    const ScopedStage stage(job.times, "tetrahedralize/check");
+    require_whole(stuffed.mesh, solid.surface, filling.edge, solid.parts.parts.front().place(), job.name);
   }
-  const auto renumber = [&](Index& v) { v = number[static_cast<std::size_t>(v)]; };
-  for (Triangle& triangle : mesh.triangles) std::for_each(triangle.begin(), triangle.end(), renumber);
-  for (VertexGroup& group : mesh.groups) {
-    std::for_each(group.vertices.begin(), group.vertices.end(), renumber);
-    std::erase(group.vertices, -1);
-  }
-  mesh.positions = std::move(used);
-  return number;
 }
 
-/// What is filled: the surface's used vertices, joined ones in one place, and its open parts thickened.
-/// carried: gets the vertices of `surface` with their numbers in the result, -1 where it has sheets instead.
-SurfaceMesh prepare(const SurfaceMesh& surface, double thickness, const std::string& name, const Log& log,
-                    std::vector<CarriedPoint>& carried) {
-  SurfaceMesh prepared;
-  prepared.positions = surface.positions;
-  prepared.triangles = surface.triangles;
-  prepared.groups = surface.groups;
-  for (std::size_t v = 0; v < surface.joined.size(); ++v)
-    prepared.positions[v] = surface.positions[static_cast<std::size_t>(surface.joined[v])];
-  for (const Vec3& position : prepared.positions) carried.push_back({position, -1});
-  const std::int64_t open = thickness > 0 ? thicken_sheets(prepared, find_parts(prepared), thickness) : 0;
-  if (open > 0)
-    log.info(fmt::format("body '{}': {} triangles of open parts became sheets {:.4g} m thick", name, open, thickness));
-  const std::vector<Index> number = drop_unused_vertices(prepared);
-  for (std::size_t v = 0; v < carried.size() && open == 0; ++v) carried[v].vertex = number[v];
-  return prepared;
+/// The meshes one after the other; they lie on one lattice, or on none.
+TetMesh join_meshes(std::vector<StuffedMesh>& meshes) {
+  TetMesh joined = std::move(meshes.front().mesh);
+  for (std::size_t m = 1; m < meshes.size(); ++m) {
+    const auto first = static_cast<Index>(joined.nodes.size());
+    const TetMesh& mesh = meshes[m].mesh;
+    joined.nodes.insert(joined.nodes.end(), mesh.nodes.begin(), mesh.nodes.end());
+    for (const Tet& tet : mesh.tets)
+      joined.tets.push_back({tet[0] + first, tet[1] + first, tet[2] + first, tet[3] + first});
+  }
+  return joined;
 }
 
-/// A flat surface has no volume with any lattice, and a size by count would ask for a lattice without end.
-void require_volume(const Job& job) {
-  constexpr double kFlat = 1e-9;  // of the area to the power of 3/2; a ball has 0.094
-  double volume = 0, area = 0;
-  bool open = false;
-  for (const SurfacePart& part : job.parts.parts) {
-    volume += std::abs(part.volume);
-    area += part.area;
-    open = open || part.open;
-  }
-  if (volume > kFlat * std::pow(area, 1.5)) return;
-  throw input_error(
-      fmt::format("body '{}': its surface is {}, so it encloses no volume. Accepted: a surface that encloses a volume, "
-                  "or an open sheet with a thickness. {}.",
-                  job.name, area > 0 ? "flat" : "no more than points and lines",
-                  open && area > 0 ? "Set thickness" : "Check the mesh file"));
+Filling fill(const Job& job) {
+  const TetrahedralizeParams& params = job.params;
+  if (params.error > 0) return fill_with_error(job, params.error);
+  return params.edge > 0 ? fill_with_edge(job, params.edge) : fill_with_count(job, static_cast<double>(params.tets));
 }
 
 }  // namespace
 
 TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name,
                        const Threads& threads, const Log& log, StageTimes& times) {
-  require_params(surface, params, name);
-  std::vector<CarriedPoint> carried;
-  const SurfaceMesh prepared = prepare(surface, params.thickness, name, log, carried);
-  const SurfaceParts parts = find_parts(prepared);
-  const Bounds box = used_bounds(prepared);
-  const Job job{prepared, parts, box, name, threads, log, times, params.mode, carried};
-  require_volume(job);
-  require_inside(job);
-  StuffedMesh stuffed = params.error > 0  ? fill_with_error(job, params.error)
-                        : params.edge > 0 ? fill_surface(job, params.edge)
-                                          : fill_with_count(job, static_cast<double>(params.tets));
-  if (stuffed.mesh.tets.empty())
+  require_params(params, name);
+  const PreparedSurface prepared = prepare_surface(surface, params.thickness, name, log);
+  const bool embedded = params.mode == TetMode::Embedded;
+  const std::vector<Solid> solids = embedded ? std::vector<Solid>{} : take_solids(prepared, name, log);
+  const Job job{prepared, solids, params, name, threads, log, times};
+  Filling filling = fill(job);
+  if (filling.tets() == 0)
     throw input_error(
         fmt::format("body '{}': its surface encloses no volume that a lattice with edge {:.4g} m can fill. "
                     "Accepted: a surface that encloses a volume. Close or thicken it, or use a smaller edge.",
-                    name, stuffed.mesh.lattice.spacing));
-  if (params.mode == TetMode::Embedded) {
-    require_quality(job, stuffed.mesh, {60 - kAngleRoundOff, 90 + kAngleRoundOff});
-    return std::move(stuffed.mesh);
-  }
-  if (params.error == 0) {
-    const ScopedStage stage(times, "tetrahedralize/fit");
-    fit_boundary(stuffed, prepared, {}, threads);
-  }
-  if (params.optimize) {
-    const ScopedStage stage(times, "tetrahedralize/optimize");
-    const AngleImprovement done = improve_angles(stuffed.mesh, &prepared, {}, threads);
-    log.info(fmt::format("body '{}': {}", name, describe(done)));
-  }
-  require_quality(job, stuffed.mesh,
-                  params.error > 0 ? AngleBounds{kMinGradedDihedral, kMaxGradedDihedral} : AngleBounds{});
-  return std::move(stuffed.mesh);
+                    name, filling.edge));
+  if (!embedded) finish_solids(job, filling);
+  TetMesh mesh = join_meshes(filling.meshes);
+  const ScopedStage stage(times, "tetrahedralize/check");
+  require_quality(mesh, embedded ? kCellAngles : params.error > 0 ? kGradedAngles : kUniformAngles, name, threads);
+  if (!embedded) require_manifold(mesh, name);
+  return mesh;
 }
 
 }  // namespace softreel

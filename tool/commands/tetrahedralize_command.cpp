@@ -160,13 +160,14 @@ Result fill(const TetrahedralizeOptions& options, const Threads& threads, const 
   result.seconds = seconds_since(start);
   if (params.mode == TetMode::Conforming) result.deviation = measure_deviation(result.surface, result.mesh, threads);
   return result;
+}
 
-  /// Draws the picture that was asked for; said in a line of the text report.
-  void add_picture(const TetrahedralizeOptions& options, const TetMesh& mesh, const Threads& threads) {
-    if (options.picture.path.empty()) return;
-    const std::string shown = draw_cut_picture(mesh, options.picture, threads);
-    if (!options.json) std::printf("  picture: %s\n", shown.c_str());
-  }
+/// Draws the picture that was asked for; said in a line of the text report.
+void add_picture(const TetrahedralizeOptions& options, const TetMesh& mesh, const Threads& threads) {
+  if (options.picture.path.empty()) return;
+  const std::string shown = draw_cut_picture(mesh, options.picture, threads);
+  if (!options.json) std::printf("  picture: %s\n", shown.c_str());
+}
 
 }  // namespace
 

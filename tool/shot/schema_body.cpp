@@ -124,6 +124,12 @@ void add_placement_fields(Table<BodySettings>& t) {
            "Tetrahedra made elsewhere, in the place and unit of mesh: .mesh (Medit), .msh (Gmsh), .vtk, .vtu; instead "
            "of tets. Such a file as mesh is both: its boundary is the surface.",
            "made by softreel")
+      .add("mode", &B::mode, choice<TetMode>({{"conforming", TetMode::Conforming}, {"embedded", TetMode::Embedded}}),
+           "",
+           "How tetrahedra fill the surface: they end at it, or whole lattice cells hold it, weighted by how full they "
+           "are, which keeps parts thinner than an edge.")
+      .add("optimize", &B::optimize, toggle(), "",
+           "Makes the worst angles of the tetrahedra better, for some seconds more.")
       .add("thickness", &B::thickness, absent_if_zero(number(kPositive)), "m",
            "Of open sheets in the surface, which then become solid.",
            "open parts count as closed where they nearly are");

@@ -12,6 +12,7 @@
 #include "core/constraints/selection.h"
 #include "core/dynamics/simulator.h"
 #include "core/elasticity/material.h"
+#include "core/tetmesh/tetrahedralize.h"
 #include "render/image/image_io.h"
 #include "render/pathtrace/path_tracer.h"
 #include "render/scene/scene.h"
@@ -98,7 +99,9 @@ struct BodySettings {
   double edge = 0;                 ///< m; or
   std::int64_t tets = 0;           ///< number of tetrahedra; or
   BodyLength error;                ///< largest distance to the surface; one of the four is set
-  double thickness = 0;            ///< m, of open sheets; 0: none
+  TetMode mode = TetMode::Conforming;
+  bool optimize = false;  ///< makes the worst angles of the tetrahedra better
+  double thickness = 0;   ///< m, of open sheets; 0: none
   std::vector<RegionSettings> regions;
   std::vector<PinSettings> pins;
   std::vector<PullSettings> pulls;

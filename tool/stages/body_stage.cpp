@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "core/tetmesh/improvement/angle_improvement.h"
 #include "core/tetmesh/tetrahedralize.h"
 #include "core/tetmesh/triangle_tree.h"
 #include "tool/stages/at_field.h"
@@ -24,6 +25,7 @@ std::vector<std::uint8_t> pack(const FilledBody& filled) {
   for (int k = 0; k < 3; ++k) out.put(filled.mesh.lattice.origin[k]);
   out.put_array(filled.mesh.nodes);
   out.put_array(filled.mesh.tets);
+  out.put_array(filled.mesh.fill);
   out.put_array(filled.embedding.elements);
   out.put_array(filled.embedding.weights);
   return out.take();
@@ -35,6 +37,7 @@ void unpack(std::span<const std::uint8_t> bytes, FilledBody& filled) {
   for (int k = 0; k < 3; ++k) filled.mesh.lattice.origin[k] = in.get<double>();
   filled.mesh.nodes = in.get_array<Vec3>();
   filled.mesh.tets = in.get_array<Tet>();
+  filled.mesh.fill = in.get_array<double>();
   filled.embedding.elements = in.get_array<Index>();
   filled.embedding.weights = in.get_array<std::array<double, 4>>();
 }
@@ -65,10 +68,23 @@ double budget_of(const BodySettings& body, const LoadedBody& loaded) {
   return body.error.in_meters(used_bounds(loaded.surface).diagonal());
 }
 
+/// Given tetrahedra, with better angles if asked; their boundary stays.
+TetMesh optimized(TetMesh mesh, const BodySettings& body, const RunContext& context) {
+  if (!body.optimize) return mesh;
+  const ScopedStage stage(context.times, "tetrahedralize/optimize");
+  const AngleImprovement done = improve_angles(mesh, nullptr, {}, context.threads);
+  context.log.info(fmt::format("body '{}': {}", body.name, describe(done)));
+  return mesh;
+}
+
 TetMesh make_tets(const BodySettings& body, const LoadedBody& loaded, const RunContext& context) {
-  if (loaded.given) return *loaded.given;
-  const TetrahedralizeParams params{
-      .edge = body.edge, .tets = body.tets, .error = budget_of(body, loaded), .thickness = body.thickness};
+  if (loaded.given) return optimized(*loaded.given, body, context);
+  const TetrahedralizeParams params{.edge = body.edge,
+                                    .tets = body.tets,
+                                    .error = budget_of(body, loaded),
+                                    .thickness = body.thickness,
+                                    .mode = body.mode,
+                                    .optimize = body.optimize};
   return tetrahedralize(loaded.surface, params, body.name, context.threads, context.log, context.times);
 }
 
@@ -95,8 +111,14 @@ void require_match(const BodySettings& body, const LoadedBody& loaded, const Fil
 StageKey filled_key(const BodySettings& body, const LoadedBody& loaded) {
   KeyHasher key(kFillVersion);
   key.add(loaded.key);
-  if (loaded.given) return key.add(loaded.given->nodes).add(loaded.given->tets).key();
-  return key.add(body.edge).add(body.tets).add(budget_of(body, loaded)).add(body.thickness).key();
+  if (loaded.given) return key.add(loaded.given->nodes).add(loaded.given->tets).add(body.optimize).key();
+  return key.add(body.edge)
+      .add(body.tets)
+      .add(budget_of(body, loaded))
+      .add(body.thickness)
+      .add(body.mode)
+      .add(body.optimize)
+      .key();
 }
 
 FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const StageKey& key,

@@ -46,6 +46,14 @@ TEST(FindSolids, JoinsWhatCrosses) {
             (std::vector<Index>{0, 0}));
 }
 
+TEST(FindSolids, TellsOverlapFromTouchWhereFacesLieInOnePlane) {
+  const SurfaceMesh cube = make_box(Vec3(1, 1, 1), 3, Vec3::Zero());
+  EXPECT_EQ(solids_of({cube, make_box(Vec3(1, 1, 1), 2, Vec3(0.97, 0, 0))}), (std::vector<Index>{0, 0}));
+  EXPECT_EQ(solids_of({cube, make_box(Vec3(1, 1, 1), 4, Vec3(0, 1.45, 0))}), (std::vector<Index>{0, 0}));
+  EXPECT_EQ(solids_of({cube, make_box(Vec3(0.7, 0.7, 0.7), 2, Vec3(1.7, 0, 0))}), (std::vector<Index>{0, 1}));
+  EXPECT_EQ(solids_of({cube, make_box(Vec3(0.7, 0.7, 0.7), 2, Vec3(-1.7, 0, 0))}), (std::vector<Index>{0, 1}));
+}
+
 TEST(FindSolids, GivesCavitiesAndHiddenShellsToTheMaterialAroundThem) {
   EXPECT_EQ(solids_of({ball(2), inside_out(ball(1))}), (std::vector<Index>{0, 0}));
   EXPECT_EQ(solids_of({ball(2), ball(1)}), (std::vector<Index>{0, 0}));

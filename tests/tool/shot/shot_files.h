@@ -89,6 +89,7 @@ translate = [0.1, 0.2, 0.3]
 rotate_deg = [10, 20, 30]
 material = "rubber"
 edge = 0.03
+mode = "embedded"
 thickness = 0.02
 
 [[body.second_by_name.region]]
@@ -154,6 +155,7 @@ tets = 5000
 mesh = "meshes/c.ply"
 material = "gel"
 error = "0.3%"
+optimize = true
 
 [body.fourth_by_name]
 mesh = "meshes/d.ply"
