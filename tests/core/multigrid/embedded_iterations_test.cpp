@@ -1,7 +1,5 @@
 // Iterations on embedded meshes, whose elements at the boundary are filled by any share down to 1e-6.
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -34,20 +32,27 @@ int iterations(const SurfaceMesh& surface, TetMode mode, double edge, double sec
   const SolveReport report = multigrid.solve(system.matrix, system.load, x, 1e-6, 0, 1000);
   EXPECT_EQ(report.status, SolveStatus::Converged);
   EXPECT_LE(test_support::relative_residual(system.matrix, system.load, x), 1.01e-6);
-  std::printf("edge %g, %zu tets, step %g, mode %d: %d iterations\n", edge, mesh.tets.size(), seconds,
-              static_cast<int>(mode), report.iterations);
   return report.iterations;
 }
 
 constexpr double kSteps[] = {0.0, 1.0 / 96};
 
-TEST(EmbeddedIterations, OfABallDoNotGrowWithItsSize) {
-  const SurfaceMesh ball = test::make_sphere(1, 24, Vec3(0.03, 0.02, 0.01));
+/// From the first lattice to finer ones, by a third at most.
+void expect_no_growth(const SurfaceMesh& surface, const std::vector<double>& edges, double pinned_below) {
   for (const double seconds : kSteps) {
-    const int small = iterations(ball, TetMode::Embedded, 0.25, seconds, -0.7);
-    for (const double edge : {0.15, 0.1})
-      EXPECT_LE(iterations(ball, TetMode::Embedded, edge, seconds, -0.7), 1.3 * small + 1);
+    const int coarse = iterations(surface, TetMode::Embedded, edges.front(), seconds, pinned_below);
+    for (const double edge : edges)
+      EXPECT_LE(iterations(surface, TetMode::Embedded, edge, seconds, pinned_below), 1.3 * coarse + 1)
+          << "edge " << edge << ", step " << seconds;
   }
+}
+
+TEST(EmbeddedIterations, OfABallDoNotGrowWithItsSize) {
+  expect_no_growth(test::make_sphere(1, 24, Vec3(0.03, 0.02, 0.01)), {0.25, 0.15, 0.1}, -0.7);
+}
+
+TEST(EmbeddedIterations, OfFingersSideBySideInOneCellDoNotGrowWithTheirSize) {
+  expect_no_growth(test::make_fork(3, 0.05, 0.01), {0.3, 0.2, 0.1}, 0.4);
 }
 
 TEST(EmbeddedIterations, OfABarAreThoseOfAConformingOneWithinAHalf) {

@@ -151,7 +151,9 @@ TEST(EncodeTetMesh, VtuHoldsFillsAsCellData) {
   std::vector<double> fill(3);
   std::memcpy(fill.data(), text.data() + text.find("\n_") + 2 + offset + sizeof(std::uint64_t), 24);
   EXPECT_EQ(fill, mesh.fill);
-  EXPECT_EQ(decode_tet_mesh("a.vtu", text, ".vtu", {}).tets, mesh.tets);
+  TetMesh corner = unit_corner();
+  corner.fill = {0.5};
+  EXPECT_EQ(decode_tet_mesh("a.vtu", text_of(encode_tet_mesh(corner, ".vtu")), ".vtu", {}).tets, corner.tets);
 }
 
 TEST(EncodeTetMesh, MeditListsNodesBoundaryAndElements) {
