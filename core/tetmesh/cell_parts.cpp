@@ -239,6 +239,7 @@ class CellSurface {
     if (!(direction.squaredNorm() > 0.5)) return;  // a triangle without area
     Vec3 start = Vec3::Zero();
     for (const Vec3& x : polygons()[cut]) start += x / static_cast<double>(polygons()[cut].size());
+    if (normal(cut).dot(direction) > 0 && touches_another(cut, start)) return;  // what lies before it is the other's
     const double winding = inside_.winding(start + kShort * direction);
     if (std::abs(winding) < kInside) return;
     double end = std::max(way_out(start, direction), 4 * kShort);
@@ -251,6 +252,13 @@ class CellSurface {
     }
     if (hit != cut) join(cut, hit);
     points.push_back({start + 0.5 * end * direction, winding, cut});
+  }
+
+  /// Whether a triangle that is not joined to this one lies at a point of it.
+  bool touches_another(std::size_t cut, const Vec3& point) {
+    for (std::size_t i = 0; i < cuts_.size(); ++i)
+      if (!joined(i, cut) && std::abs(meet(i, point, normal(cut))) < kShort) return true;
+    return false;
   }
 
   /// How far it is from a point of the cell to its end.

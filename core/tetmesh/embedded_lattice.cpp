@@ -1,7 +1,6 @@
 #include "core/tetmesh/embedded_lattice.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 
 #include "core/base/check.h"
@@ -13,8 +12,8 @@ namespace {
 
 constexpr std::int64_t kGrain = 64;
 
-/// How many cells in a row parts may be made one in.
-constexpr int kMergeRounds = 2;
+/// How many cells in a row parts may be made one in; three cells make about an edge.
+constexpr int kMergeRounds = 4;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -115,59 +114,21 @@ class Cover {
 
   void join_across(const CoverCell& a, const CoverCell& b, std::size_t face, const CellNeighbor& neighbor,
                    DisjointSets& nodes) const {
-    std::vector<CopyPair> pairs = pairs_across(a, b, face, neighbor);
-    for (const CopyPair& pair : pairs) {
-      const bool whole = pair.corners == 0 || is_best(pairs, pair);
+    const auto join = [&](Index copy_a, Index copy_b) {
       for (std::size_t k = 0; k < 4; ++k)
-        if (k != face && (whole || ((pair.corners >> k) & 1) != 0))
-          nodes.join(4 * pair.a + static_cast<Index>(k), 4 * pair.b + neighbor.corner[k]);
-    }
-  }
-
-  /// Copies on either side of a face that are joined there, each pair once.
-  struct CopyPair {
-    Index a, b;
-    unsigned corners;  // bit k: corner k of a, on the face, is inside and theirs
-    double fill;       // of both
-  };
-
-  std::vector<CopyPair> pairs_across(const CoverCell& a, const CoverCell& b, std::size_t face,
-                                     const CellNeighbor& neighbor) const {
-    std::vector<CopyPair> pairs;
-    const auto add = [&](Index copy_a, Index copy_b, unsigned corners) {
-      for (CopyPair& pair : pairs)
-        if (pair.a == copy_a && pair.b == copy_b) {
-          pair.corners |= corners;
-          return;
-        }
-      pairs.push_back({copy_a, copy_b, corners,
-                       a.parts.fills[at(copy_a - a.first_copy)] + b.parts.fills[at(copy_b - b.first_copy)]});
+        if (k != face) nodes.join(4 * copy_a + static_cast<Index>(k), 4 * copy_b + neighbor.corner[k]);
     };
     for (std::size_t k = 0; k < 4; ++k)
       if (k != face && a.corner_copy(k) >= 0 && b.corner_copy(neighbor.corner[k]) >= 0)
-        add(a.corner_copy(k), b.corner_copy(neighbor.corner[k]), 1U << k);
+        join(a.corner_copy(k), b.corner_copy(neighbor.corner[k]));
     // Triangles that pass through the face, as either of the two sees it; both lists ascend.
     for (std::size_t i = a.cuts, j = b.cuts; i < a.cuts + a.count && j < b.cuts + b.count;) {
       const Index t = cuts_[i].triangle, u = cuts_[j].triangle;
       if (t == u && (((cuts_[i].faces >> face) & 1) != 0 || ((cuts_[j].faces >> neighbor.face) & 1) != 0))
-        add(cut_copies_[i], cut_copies_[j], 0);
+        join(cut_copies_[i], cut_copies_[j]);
       i += t <= u ? 1 : 0;
       j += u <= t ? 1 : 0;
     }
-    return pairs;
-  }
-
-  /// Two parts on one side of a face that are one on the other, as at the end of a slit: both cannot have the whole
-  /// face. One gets it; another keeps the nodes that lie in it, about which all is solid, so that it stays joined round
-  /// them. (One without such nodes, a thin limb, keeps the whole face too: what is joined is never parted.)
-  static bool is_best(const std::vector<CopyPair>& pairs, const CopyPair& pair) {
-    return std::none_of(pairs.begin(), pairs.end(), [&](const CopyPair& other) {
-      if ((other.a == pair.a) == (other.b == pair.b)) return false;  // itself, or beside it
-      const int own = std::popcount(pair.corners), others = std::popcount(other.corners);
-      if (own != others) return others > own;
-      if (other.fill != pair.fill) return other.fill > pair.fill;
-      return std::pair(other.a, other.b) < std::pair(pair.a, pair.b);
-    });
   }
 
   /// Two copies of one cell that have come to share a face, and their corner opposite it.

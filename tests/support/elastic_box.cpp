@@ -128,7 +128,7 @@ ElasticSystem assemble(const TetMesh& mesh, const ElasticParams& params,
     const double E = params.youngs_modulus * (stiffness_factor.empty() ? 1.0 : stiffness_factor[e]);
     const double lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), mu = E / (2 * (1 + nu));
     const auto at = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(tet[k])]; };
-    const double V = tet_volume(at(0), at(1), at(2), at(3)), mass = 0.25 * V * params.density;
+    const double V = mesh.fill_of(e) * tet_volume(at(0), at(1), at(2), at(3)), mass = 0.25 * V * params.density;
     Eigen::Matrix<double, 4, 3> a = gradients(mesh, tet);
     if (!rotations.empty()) a = a * rotations[e].transpose();
     for (int i = 0; i < 4; ++i) {

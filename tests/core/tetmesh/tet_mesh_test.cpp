@@ -138,6 +138,24 @@ TEST(EncodeTetMesh, VtuBlocksLieWhereItsHeaderSays) {
   EXPECT_EQ(last, mesh.tets.back());
 }
 
+TEST(EncodeTetMesh, VtuHoldsFillsAsCellData) {
+  TetMesh mesh = three_tets();
+  const std::string whole = text_of(encode_tet_mesh(mesh, ".vtu"));
+  EXPECT_EQ(whole.find("CellData"), std::string::npos);
+  mesh.fill = {1, 0.25, 1e-6};
+  const std::string text = text_of(encode_tet_mesh(mesh, ".vtu"));
+  const std::size_t at = text.find("Name=\"fill\"");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_GT(at, text.find("<CellData"));
+  const auto offset = static_cast<std::size_t>(std::stoul(text.substr(text.find("offset=\"", at) + 8)));
+  std::vector<double> fill(3);
+  std::memcpy(fill.data(), text.data() + text.find("\n_") + 2 + offset + sizeof(std::uint64_t), 24);
+  EXPECT_EQ(fill, mesh.fill);
+  TetMesh corner = unit_corner();
+  corner.fill = {0.5};
+  EXPECT_EQ(decode_tet_mesh("a.vtu", text_of(encode_tet_mesh(corner, ".vtu")), ".vtu", {}).tets, corner.tets);
+}
+
 TEST(EncodeTetMesh, MeditListsNodesBoundaryAndElements) {
   const std::string text = text_of(encode_tet_mesh(three_tets(), ".mesh"));
   EXPECT_NE(text.find("Vertices\n7\n"), std::string::npos);

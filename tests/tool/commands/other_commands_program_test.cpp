@@ -186,6 +186,25 @@ TEST(Tetrahedralize, WritesElementsWithinTheirBounds) {
   }
 }
 
+TEST(Tetrahedralize, EmbedsInWholeLatticeTetrahedra) {
+  const std::string folder = shot_folder("tets_embedded");
+  const std::string command =
+      fmt::format("softreel tetrahedralize {0}/sphere.obj -o {0}/out.vtu --tets 3000 --mode embedded --quiet", folder);
+  const Outcome outcome = run(command + " --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_NEAR(report["tets"].get<double>(), 3000, 150);
+  EXPECT_NEAR(report["min_dihedral_deg"].get<double>(), 60, 1e-3);
+  EXPECT_NEAR(report["max_dihedral_deg"].get<double>(), 90, 1e-3);
+  EXPECT_LT(report["filled_share"].get<double>(), 1);
+  EXPECT_GT(report["cut_cells"].get<int>(), 100);
+  EXPECT_EQ(report["copies"].get<int>(), 0);
+  const Outcome text = run(command);
+  ASSERT_EQ(text.status, 0) << text.err;
+  for (const char* part : {"filled to", "cut cells", "copies"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << text.out;
+}
+
 TEST(Inspect, RefusesBrokenTetrahedra) {
   const std::string folder = new_folder("tets_broken");
   write_text(folder + "/broken.mesh", "MeshVersionFormatted 2\nVertices\n3\n0 0 0 0\n");
