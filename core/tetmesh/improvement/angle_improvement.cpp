@@ -120,8 +120,8 @@ AngleImprovement improve_angles(TetMesh& mesh, const SurfaceMesh* surface, const
   const TetQuality before = measure_quality(mesh, threads);
   std::vector<Triangle> boundary = boundary_faces(mesh);
   std::unique_ptr<BoundarySlide> slide;
-  if (surface != nullptr && !boundary.empty())
-    slide = std::make_unique<BoundarySlide>(mesh.nodes, boundary, *surface, params.good_distance, threads);
+  if (surface != nullptr && !surface->triangles.empty() && !boundary.empty())
+    slide = std::make_unique<BoundarySlide>(mesh.nodes, boundary, *surface, threads);
   AngleImprovement done = Improver(mesh, boundary, slide.get(), params).run(params.passes);
   done.before = before;
   done.after = measure_quality(mesh, threads);
