@@ -21,7 +21,8 @@ struct Probe {
 class Search {
  public:
   /// lower: a distance known to be reached. smallest: triangles with shorter edges are not quartered, m.
-  Search(const TriangleTree& tree, double lower, double smallest) : tree_(tree), best_(lower), smallest_(smallest) {}
+  Search(const TriangleTree& tree, double lower, double smallest, double tolerance = kFarthestTolerance)
+      : tree_(tree), best_(lower), smallest_(smallest), tolerance_(tolerance) {}
 
   static Probe probe(const TriangleTree& tree, const Vec3& point) {
     const TriangleTree::Nearest found = tree.nearest(point);
@@ -36,7 +37,7 @@ class Search {
         {(a.point - b.point).squaredNorm(), (b.point - c.point).squaredNorm(), (c.point - a.point).squaredNorm()}));
     if (!(longest > smallest_)) return;
     // Every point is within longest / sqrt(3) of a corner, and no farther from the tree than the corner by more.
-    const double enough = best_ * (1 + kFarthestTolerance);
+    const double enough = best_ * (1 + tolerance_);
     if (std::max({a.distance, b.distance, c.distance}) + 0.578 * longest <= enough) return;
     if (upper_bound(a, b, c) <= enough) return;
     const Probe ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
@@ -62,7 +63,7 @@ class Search {
   }
 
   const TriangleTree& tree_;
-  double best_, smallest_;
+  double best_, smallest_, tolerance_;
 };
 
 double edge_sum(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -106,6 +107,13 @@ double farthest_distance(const std::vector<Vec3>& points, const std::vector<Tria
     farthest[static_cast<std::size_t>(begin / kGrain)] = search.best();
   });
   return *std::max_element(farthest.begin(), farthest.end());
+}
+
+double farthest_of_triangle(const std::array<Vec3, 3>& corners, const TriangleTree& tree, double lower, double smallest,
+                            double tolerance) {
+  Search search(tree, lower, smallest, tolerance);
+  search.visit(Search::probe(tree, corners[0]), Search::probe(tree, corners[1]), Search::probe(tree, corners[2]));
+  return search.best();
 }
 
 }  // namespace softreel

@@ -22,4 +22,10 @@ constexpr double kFarthestTolerance = 0.01;
 double farthest_distance(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                          const TriangleTree& tree, const Threads& threads);
 
+/// Largest distance of any point of one triangle to the nearest triangle of `tree`, which must not be empty, if that is
+/// above `lower`; else `lower`. m. The result is at most a share `tolerance` of itself too small, but for what lies
+/// between the corners of parts with edges no longer than `smallest`.
+double farthest_of_triangle(const std::array<Vec3, 3>& corners, const TriangleTree& tree, double lower, double smallest,
+                            double tolerance);
+
 }  // namespace softreel

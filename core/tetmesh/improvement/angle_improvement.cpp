@@ -16,6 +16,9 @@ namespace {
 /// At the target or better.
 constexpr double kWanted = 1;
 
+/// After so many elements an empty loop looks whether the user wants to stop; one takes less than some milliseconds.
+constexpr std::size_t kStopStride = 64;
+
 AngleMeasure make_measure(const TetMesh& mesh, const AngleImprovementParams& params) {
   AngleMeasure measure(params.min_dihedral, params.max_dihedral);
   for (const Tet& tet : mesh.tets) {
@@ -37,10 +40,14 @@ class Improver {
         flips_(tets_),
         was_moved_(mesh.nodes.size(), false) {}
 
-  AngleImprovement run(int passes) {
+  AngleImprovement run(int passes, const Threads& threads) {
     for (int pass = 0; pass < passes; ++pass) {
       const std::int64_t before = tets_.now();
-      for (const Index element : waiting()) improve(element);
+      const std::vector<Index> elements = waiting();
+      for (std::size_t i = 0; i < elements.size(); ++i) {
+        if (i % kStopStride == 0) threads.for_chunks(1, 1, [](std::int64_t, std::int64_t) {});
+        improve(elements[i]);
+      }
       if (tets_.now() == before) break;
     }
     tets_.compact();
@@ -77,9 +84,9 @@ class Improver {
 
   void improve(Index element) {
     if (!is_bad(element)) return;
+    const std::int64_t before = tets_.now();
     if (!flip(element)) smooth(element);
-    if (is_bad(element) && static_cast<std::size_t>(element) < tried_.size())
-      tried_[static_cast<std::size_t>(element)] = tets_.now();
+    if (tets_.now() == before) tried_[static_cast<std::size_t>(element)] = before;
   }
 
   void smooth(Index element) {
@@ -89,13 +96,28 @@ class Improver {
   }
 
   bool flip(Index element) {
+    if (remove_edge_of(element)) {
+      ++done_.removed_edges;
+      return true;
+    }
+    if (remove_face_of(element)) {
+      ++done_.removed_faces;
+      return true;
+    }
+    return false;
+  }
+
+  bool remove_edge_of(Index element) {
     const Tet nodes = tets_.tet(element);
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = i + 1; j < 4; ++j)
-        if (flips_.remove_edge(nodes[i], nodes[j])) return ++done_.removed_edges > 0;
-    for (const Index apex : nodes)
-      if (flips_.remove_face(element, apex)) return ++done_.removed_faces > 0;
+        if (flips_.remove_edge(nodes[i], nodes[j])) return true;
     return false;
+  }
+
+  bool remove_face_of(Index element) {
+    const Tet nodes = tets_.tet(element);
+    return std::ranges::any_of(nodes, [&](Index apex) { return flips_.remove_face(element, apex); });
   }
 
   AngleMeasure measure_;
@@ -120,9 +142,9 @@ AngleImprovement improve_angles(TetMesh& mesh, const SurfaceMesh* surface, const
   const TetQuality before = measure_quality(mesh, threads);
   std::vector<Triangle> boundary = boundary_faces(mesh);
   std::unique_ptr<BoundarySlide> slide;
-  if (surface != nullptr && !boundary.empty())
-    slide = std::make_unique<BoundarySlide>(mesh.nodes, boundary, *surface, params.good_distance, threads);
-  AngleImprovement done = Improver(mesh, boundary, slide.get(), params).run(params.passes);
+  if (surface != nullptr && !surface->triangles.empty() && !boundary.empty())
+    slide = std::make_unique<BoundarySlide>(mesh.nodes, boundary, *surface, threads);
+  AngleImprovement done = Improver(mesh, boundary, slide.get(), params).run(params.passes, threads);
   done.before = before;
   done.after = measure_quality(mesh, threads);
   return done;

@@ -15,8 +15,6 @@ struct AngleImprovementParams {
   double min_dihedral = 25;   ///< degrees; elements whose angles are between the two are not worked on
   double max_dihedral = 140;  ///< degrees
   int passes = 8;             ///< over all elements that are worse, worst first; fewer if nothing changes any more
-  double good_distance =
-      0.5;  ///< nodes slide freely where the surface is nearer than this share of the largest distance
 };
 
 /// What was done.
@@ -29,12 +27,11 @@ struct AngleImprovement {
 /// Every change makes the worst of the elements that it touches better, and none makes an angle beyond those of the
 /// mesh as it was: neither the smallest nor the largest angle of the mesh gets worse.
 ///
-/// The boundary keeps its faces. Its nodes stay without a surface; with one they slide along it, but for creases and
-/// corners of the boundary, if neither the faces there nor the surface under them get further from each other (in
-/// samples) than the larger of what they were and good_distance of the largest distance. Nodes keep their numbers; as
-/// many as before are used. Number and order of the elements change. Serial but for the distances; equal bits at any
-/// number of threads. Cost: a millisecond or less per element that is worse than the target, and the measuring.
-/// mesh: positive volumes. surface: may be null.
+/// The boundary keeps its faces. Its nodes stay without a surface; with one they slide along it if neither the faces
+/// round them get further from the surface nor the surface there from the faces (in samples). Nodes keep their numbers.
+/// Number and order of the elements change. Serial but for the distances; equal bits at any number of threads. Cost: a
+/// millisecond or less per element that is worse than the target, and the measuring. mesh: positive volumes. surface:
+/// may be null.
 AngleImprovement improve_angles(TetMesh& mesh, const SurfaceMesh* surface, const AngleImprovementParams& params,
                                 const Threads& threads);
 

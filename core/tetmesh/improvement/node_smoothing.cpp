@@ -149,7 +149,7 @@ bool NodeSmoothing::step(Vec3& x, double& quality) {
     const Vec3 to = placed(x + (length / slope) * up);
     const double limit = std::min(quality + kPromiseKept * length * slope, worthwhile(quality));
     const double reached = quality_at(to, limit);
-    if (reached <= limit || (slides_ && !slide_->keeps_distance(node_, to))) continue;
+    if (reached <= limit || (slides_ && !slide_->keeps(node_, to, distances()))) continue;
     x = to;
     quality = reached;
     return true;
@@ -157,11 +157,18 @@ bool NodeSmoothing::step(Vec3& x, double& quality) {
   return false;
 }
 
+/// Those of the node before it moved, found when they are first asked for.
+const BoundarySlide::Distances& NodeSmoothing::distances() {
+  if (!distances_) distances_ = slide_->distances(node_);
+  return *distances_;
+}
+
 bool NodeSmoothing::improve(Index node) {
   slides_ = on_boundary_[static_cast<std::size_t>(node)];
   if (slides_ && slide_ == nullptr) return false;
   gather(node);
   if (slides_) normal_ = slide_->normal(node);
+  distances_.reset();
   Vec3 x = tets_.position(node);
   double before = std::numeric_limits<double>::max();
   for (const Index e : tets_.star(node)) before = std::min(before, tets_.quality(e));

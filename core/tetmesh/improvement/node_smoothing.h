@@ -6,6 +6,8 @@
 /// Convex Set, 1966).
 #pragma once
 
+#include <optional>
+
 #include "core/tetmesh/improvement/boundary_slide.h"
 #include "core/tetmesh/improvement/tet_stars.h"
 
@@ -28,6 +30,7 @@ class NodeSmoothing {
   Vec3 direction(const Vec3& x, double quality);
   bool step(Vec3& x, double& quality);
   Vec3 placed(const Vec3& x) const;
+  const BoundarySlide::Distances& distances();
   double shortest_edge(const Vec3& x) const;
 
   TetStars& tets_;
@@ -35,7 +38,8 @@ class NodeSmoothing {
   const std::vector<bool>& on_boundary_;
   Index node_ = -1;
   bool slides_ = false;
-  Vec3 normal_ = Vec3::Zero();                 ///< of the boundary at a node that slides
+  Vec3 normal_ = Vec3::Zero();  ///< of the boundary at a node that slides
+  std::optional<BoundarySlide::Distances> distances_;
   std::vector<std::array<Vec3, 3>> opposite_;  ///< of each element of the star the face opposite to the node
   std::vector<Vec3> gradients_;                ///< of what is nearly the worst
 };

@@ -214,6 +214,44 @@ TEST(Inspect, RefusesBrokenTetrahedra) {
   EXPECT_NE(outcome.err.find("Accepted"), std::string::npos) << outcome.err;
 }
 
+TEST(Tetrahedralize, OptimizesWhatItFillsAndWhatItIsGiven) {
+  const std::string folder = shot_folder("tets_optimize");
+  const auto tetrahedralize = [&](const std::string& arguments) {
+    const Outcome outcome = run(fmt::format("softreel tetrahedralize {0}/{1} --json", folder, arguments));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return std::pair(json::parse(outcome.out), outcome.err);
+  };
+  const json plain = tetrahedralize(fmt::format("sphere.obj -o {}/plain.msh --tets 9000", folder)).first;
+  const auto [filled, said] = tetrahedralize(fmt::format("sphere.obj -o {}/filled.vtu --tets 9000 --optimize", folder));
+  for (const char* part : {"dihedral angles", "became", "moved", "flipped"})
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+  const json copied = tetrahedralize(fmt::format("plain.msh -o {}/copied.mesh", folder)).first;
+  const json given = tetrahedralize(fmt::format("plain.msh -o {}/given.vtu --optimize", folder)).first;
+  for (const char* fact : {"tets", "nodes", "volume", "min_dihedral_deg", "max_dihedral_deg"})
+    EXPECT_EQ(copied[fact], plain[fact]) << fact;
+  EXPECT_FALSE(given.contains("distance"));
+  for (const json& better : {filled, given}) {
+    EXPECT_GT(better["min_dihedral_deg"], plain["min_dihedral_deg"]);
+    EXPECT_LE(better["max_dihedral_deg"], plain["max_dihedral_deg"]);
+    EXPECT_NEAR(better["volume"].get<double>(), plain["volume"].get<double>(), 1e-3 * plain["volume"].get<double>());
+  }
+  EXPECT_LE(filled["distance"].get<double>(), 1.002 * plain["distance"].get<double>());
+}
+
+TEST(Tetrahedralize, RefusesSizesForGivenTetrahedra) {
+  const std::string folder = shot_folder("tets_given");
+  ASSERT_EQ(run(fmt::format("softreel tetrahedralize {0}/sphere.obj -o {0}/given.msh --tets 500", folder)).status, 0);
+  for (const char* option : {"--edge 0.1", "--tets 500", "--error 1%", "--thickness 0.1", "--fit 2"}) {
+    const Outcome outcome =
+        run(fmt::format("softreel tetrahedralize {0}/given.msh -o {0}/out.vtu {1}", folder, option));
+    EXPECT_EQ(outcome.status, 2);
+    const std::string name = std::string(option).substr(0, std::string(option).find(' '));
+    for (const std::string& part : {name, std::string("given.msh"), std::string("Accepted"), std::string("--optimize")})
+      EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    EXPECT_FALSE(exists(folder + "/out.vtu"));
+  }
+}
+
 TEST(Tetrahedralize, KeepsToAnErrorBudgetInPercentOrInTheMeshsUnit) {
   const std::string folder = shot_folder("tets_error");
   for (const char* budget : {"1%", "0.03"}) {
