@@ -220,11 +220,15 @@ void require_inside(const Job& job) {
       job.name, part.name, center[0], center[1], center[2]));
 }
 
-/// Leaves out the vertices that no triangle uses: what looks at vertices is not to see them.
-void drop_unused_vertices(SurfaceMesh& mesh) {
+/// One vertex for each place, and none that no triangle uses: what looks at vertices is not to see the others.
+void keep_used_places(SurfaceMesh& mesh) {
+  const std::vector<Index> weld = weld_positions(mesh.positions);
   std::vector<Index> number(mesh.positions.size(), -1);
-  for (const Triangle& triangle : mesh.triangles)
-    for (const Index v : triangle) number[static_cast<std::size_t>(v)] = 0;
+  for (Triangle& triangle : mesh.triangles)
+    for (Index& v : triangle) {
+      v = weld[static_cast<std::size_t>(v)];
+      number[static_cast<std::size_t>(v)] = 0;
+    }
   std::vector<Vec3> used;
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] < 0) continue;
@@ -240,7 +244,7 @@ void drop_unused_vertices(SurfaceMesh& mesh) {
   mesh.positions = std::move(used);
 }
 
-/// What is filled: the surface's used vertices, joined ones in one place, and its open parts thickened.
+/// What is filled: the surface's used places, joined vertices in one of them, and its open parts thickened.
 SurfaceMesh prepare(const SurfaceMesh& surface, double thickness, const std::string& name, const Log& log) {
   SurfaceMesh prepared;
   prepared.positions = surface.positions;
@@ -252,7 +256,7 @@ SurfaceMesh prepare(const SurfaceMesh& surface, double thickness, const std::str
     if (const std::int64_t open = thicken_sheets(prepared, find_parts(prepared), thickness); open > 0)
       log.info(
           fmt::format("body '{}': {} triangles of open parts became sheets {:.4g} m thick", name, open, thickness));
-  drop_unused_vertices(prepared);
+  keep_used_places(prepared);
   return prepared;
 }
 

@@ -39,6 +39,18 @@ void check_extension(const std::string& path) {
                   path, extension));
 }
 
+/// Tetrahedra are no surface: said before a reader of surfaces says that it does not know them. (".mesh" is also a
+/// format of surfaces.)
+void require_surface(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (!is_tet_mesh_extension(extension) || extension == ".mesh") return;
+  throw input_error(
+      fmt::format("{}: a {} file holds tetrahedra, not a surface to fill.\n  Accepted: a surface (.obj, .ply, .off, "
+                  ".stl, .gltf, .glb, .fbx, .dae, ...). Use the tetrahedra as they are: softreel inspect says what "
+                  "they are.",
+                  path, extension));
+}
+
 /// --error in metres: a number, or a share of the diagonal with a % sign.
 double parse_error_budget(const std::string& text, double diagonal) {
   if (text.empty()) return 0;
@@ -88,6 +100,7 @@ void print_text(const TetrahedralizeOptions& options, const Result& result) {
 
 int run_tetrahedralize(const TetrahedralizeOptions& options) {
   check_extension(options.output);
+  require_surface(options.mesh);
   Console console(options.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0);
   const Log log = console.log();
   const Threads threads(options.threads);
