@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "core/mesh/mesh_topology.h"
 
@@ -44,37 +46,93 @@ bool box_contains(const Bounds& outer, const Bounds& inner) {
   return (outer.min.array() <= inner.min.array()).all() && (outer.max.array() >= inner.max.array()).all();
 }
 
-/// Parity of the crossings of a ray from `from`. Its direction is a fixed one that no modelled face or edge has.
-bool is_inside(const SurfaceMesh& mesh, const Shell& shell, const Vec3& from) {
-  const Vec3 direction = Vec3(0.5377, 0.2361, 0.8093).normalized();
-  const Vec3 u = direction.unitOrthogonal(), v = direction.cross(u);
-  bool inside = false;
-  for (const Triangle& triangle : shell.triangles) {
-    std::array<Vec3, 3> p;  // u, v: in the plane across the ray; z: along it
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 d = mesh.positions[static_cast<std::size_t>(triangle[k])] - from;
-      p[k] = Vec3(u.dot(d), v.dot(d), direction.dot(d));
-    }
-    std::array<double, 3> w;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 &a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
-      w[k] = a.x() * b.y() - a.y() * b.x();
-    }
-    const bool left = w[0] >= 0 && w[1] >= 0 && w[2] >= 0, right = w[0] < 0 && w[1] < 0 && w[2] < 0;
-    if (!left && !right) continue;
-    const double sum = w[0] + w[1] + w[2];
-    if (sum != 0 && (w[0] * p[0].z() + w[1] * p[1].z() + w[2] * p[2].z()) / sum > 0) inside = !inside;
+/// Direction of all rays, one that no modelled face or edge has, and two across it.
+const Vec3 kAlong = Vec3(0.5377, 0.2361, 0.8093).normalized(), kAcross = kAlong.unitOrthogonal(),
+           kAside = kAlong.cross(kAcross);
+
+using Corners = std::array<Vec3, 3>;
+
+/// Whether a ray along z from the origin crosses a triangle, given in the coordinates kAcross, kAside, kAlong.
+bool is_crossed(const Corners& p) {
+  std::array<double, 3> w;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
+    w[k] = a.x() * b.y() - a.y() * b.x();
   }
-  return inside;
+  const bool left = w[0] >= 0 && w[1] >= 0 && w[2] >= 0, right = w[0] < 0 && w[1] < 0 && w[2] < 0;
+  const double sum = w[0] + w[1] + w[2];
+  return (left || right) && sum != 0 && (w[0] * p[0].z() + w[1] * p[1].z() + w[2] * p[2].z()) / sum > 0;
 }
 
-/// A shell is inside of another if most of three points spread over it are.
-bool contains_shell(const SurfaceMesh& mesh, const Shell& outer, const Shell& inner) {
-  if (!box_contains(outer.bounds, inner.bounds)) return false;
+/// A shell's triangles in slices across the rays, so that a ray meets only those of its own slice.
+class SlicedShell {
+ public:
+  SlicedShell(const SurfaceMesh& mesh, const Shell& shell) : mesh_(mesh), shell_(shell) {
+    center_ = shell.bounds.center();
+    reach_ = (0.5 + 1e-9) * shell.bounds.diagonal();
+    // As many slices as leave a triangle in four of them on average.
+    double sum = 0;
+    for (const Triangle& t : shell.triangles) {
+      const auto [low, high] = span_of(t);
+      sum += high - low;
+    }
+    const auto count = static_cast<double>(shell.triangles.size());
+    const double most = sum > 0 ? 3 * count * 2 * reach_ / sum : 1;
+    slices_.resize(std::isfinite(most) ? static_cast<std::size_t>(std::clamp(most, 1.0, count)) : 1);
+    for (std::size_t i = 0; i < shell.triangles.size(); ++i) {
+      const auto [low, high] = span_of(shell.triangles[i]);
+      for (std::size_t s = slice_at(low), last = slice_at(high); s <= last; ++s)
+        slices_[s].push_back(static_cast<Index>(i));
+    }
+  }
+
+  /// Parity of the crossings of a ray from a point within the shell's box.
+  bool is_inside(const Vec3& from) const {
+    bool inside = false;
+    for (const Index i : slices_[slice_at(kAside.dot(from - center_))]) {
+      Corners p;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 d =
+            mesh_.positions[static_cast<std::size_t>(shell_.triangles[static_cast<std::size_t>(i)][k])] - from;
+        p[k] = Vec3(kAcross.dot(d), kAside.dot(d), kAlong.dot(d));
+      }
+      if (is_crossed(p)) inside = !inside;
+    }
+    return inside;
+  }
+
+ private:
+  /// A triangle's extent along kAside, with a margin for rounding.
+  std::pair<double, double> span_of(const Triangle& t) const {
+    double low = 1e300, high = -1e300;
+    for (const Index v : t) {
+      const double at = kAside.dot(mesh_.positions[static_cast<std::size_t>(v)] - center_);
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    return {low - 1e-9 * reach_, high + 1e-9 * reach_};
+  }
+
+  std::size_t slice_at(double aside) const {
+    const double share = reach_ > 0 ? 0.5 * (aside / reach_ + 1) : 0;
+    if (!(share > 0)) return 0;
+    const auto last = static_cast<double>(slices_.size() - 1);
+    return static_cast<std::size_t>(std::min(share * static_cast<double>(slices_.size()), last));
+  }
+
+  const SurfaceMesh& mesh_;
+  const Shell& shell_;
+  Vec3 center_;
+  double reach_ = 0;
+  std::vector<std::vector<Index>> slices_;
+};
+
+/// A shell is inside of another, whose box contains its own, if most of three points spread over it are.
+bool contains_shell(const SurfaceMesh& mesh, const SlicedShell& outer, const Shell& inner) {
   const auto is_triangle_inside = [&](std::size_t t) {
     Vec3 centroid = Vec3::Zero();
     for (const Index v : inner.triangles[t]) centroid += mesh.positions[static_cast<std::size_t>(v)] / 3;
-    return is_inside(mesh, outer, centroid);
+    return outer.is_inside(centroid);
   };
   const std::size_t count = inner.triangles.size();
   const bool first = is_triangle_inside(0), middle = is_triangle_inside(count / 2);
@@ -90,9 +148,14 @@ std::vector<char> find_inverted_shells(const SurfaceMesh& mesh, const std::vecto
   std::stable_sort(shells.begin(), shells.end(),
                    [](const Shell& a, const Shell& b) { return std::abs(a.volume6) > std::abs(b.volume6); });
   std::vector<char> inverted(closed.size(), 0);
+  std::vector<std::unique_ptr<SlicedShell>> sliced(shells.size());  // once something lies in their box
+  std::vector<Bounds> boxes;
+  for (const Shell& shell : shells) boxes.push_back(shell.bounds);
   for (std::size_t s = 0; s < shells.size(); ++s) {
     for (std::size_t outer = s; outer-- > 0;) {
-      if (!contains_shell(mesh, shells[outer], shells[s])) continue;
+      if (!box_contains(boxes[outer], boxes[s])) continue;
+      if (sliced[outer] == nullptr) sliced[outer] = std::make_unique<SlicedShell>(mesh, shells[outer]);
+      if (!contains_shell(mesh, *sliced[outer], shells[s])) continue;
       const bool alike = (shells[outer].volume6 > 0) == (shells[s].volume6 > 0);
       shells[s].wanted_outward = shells[outer].wanted_outward == alike;
       break;

@@ -11,6 +11,13 @@
 namespace softreel {
 namespace {
 
+/// One vertex for each place, so that what sorts vertices by place does so once.
+void weld(SurfaceMesh& mesh) {
+  const std::vector<Index> first = weld_positions(mesh.positions);
+  for (Triangle& triangle : mesh.triangles)
+    for (Index& v : triangle) v = first[static_cast<std::size_t>(v)];
+}
+
 /// Leaves out the vertices that no triangle uses: what looks at vertices is not to see them. Returns the new number of
 /// each vertex, -1 for those left out.
 std::vector<Index> drop_unused_vertices(SurfaceMesh& mesh) {
@@ -34,7 +41,7 @@ std::vector<Index> drop_unused_vertices(SurfaceMesh& mesh) {
 }
 
 /// Used vertices with joined ones in one place, and open parts thickened; fills in `carried` too.
-void take_surface(const SurfaceMesh& surface, double thickness, const std::string& name, const Log& log,
+void take_surface(const SurfaceMesh& surface, const PreparationParams& params, const std::string& name, const Log& log,
                   PreparedSurface& prepared) {
   SurfaceMesh& taken = prepared.surface;
   taken.positions = surface.positions;
@@ -43,9 +50,11 @@ void take_surface(const SurfaceMesh& surface, double thickness, const std::strin
   for (std::size_t v = 0; v < surface.joined.size(); ++v)
     taken.positions[v] = surface.positions[static_cast<std::size_t>(surface.joined[v])];
   for (const Vec3& position : taken.positions) prepared.carried.push_back({position, -1});
-  const std::int64_t open = thickness > 0 ? thicken_sheets(taken, find_parts(taken), thickness) : 0;
+  const std::int64_t open = params.thickness > 0 ? thicken_sheets(taken, find_parts(taken), params.thickness) : 0;
   if (open > 0)
-    log.info(fmt::format("body '{}': {} triangles of open parts became sheets {:.4g} m thick", name, open, thickness));
+    log.info(fmt::format("body '{}': {} triangles of open parts became sheets {:.4g} m thick", name, open,
+                         params.thickness));
+  if (!params.keep_vertices) weld(taken);
   const std::vector<Index> number = drop_unused_vertices(taken);
   for (std::size_t v = 0; v < prepared.carried.size() && open == 0; ++v) prepared.carried[v].vertex = number[v];
 }
@@ -82,14 +91,15 @@ void require_inside(const PreparedSurface& prepared, const std::string& name) {
 
 }  // namespace
 
-PreparedSurface prepare_surface(const SurfaceMesh& surface, double thickness, const std::string& name, const Log& log) {
+PreparedSurface prepare_surface(const SurfaceMesh& surface, const PreparationParams& params, const std::string& name,
+                                const Log& log) {
   if (surface.triangles.empty())
     throw input_error(
         fmt::format("body '{}': its surface has no triangles, so there is nothing to fill. Accepted: a "
                     "surface that encloses a volume. Check the mesh file.",
                     name));
   PreparedSurface prepared;
-  take_surface(surface, thickness, name, log, prepared);
+  take_surface(surface, params, name, log, prepared);
   prepared.parts = find_parts(prepared.surface);
   prepared.box = used_bounds(prepared.surface);
   require_volume(prepared.parts, name);

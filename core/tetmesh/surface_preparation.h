@@ -15,12 +15,19 @@ struct PreparedSurface {
   SurfaceMesh surface;  ///< every vertex is used by a triangle
   SurfaceParts parts;
   Bounds box;
-  /// The vertices of the surface as it was given, with their numbers in `surface`, -1 where that has sheets instead.
+  /// The vertices of the surface as it was given, with their numbers in `surface`, -1 where it has none for them.
   std::vector<CarriedPoint> carried;
 };
 
-/// thickness: of open parts, m; 0: they stay as they are. name: the body's, for messages. Throws input_error, one line,
+struct PreparationParams {
+  double thickness = 0;  ///< of open parts, m; 0: they stay as they are
+  /// Vertices in one place stay as many as the file has: what only touches is told apart by them. Else they become one.
+  bool keep_vertices = false;
+};
+
+/// name: the body's, for messages. Throws input_error, one line,
 /// for what has no volume to fill: no triangles, a flat surface, an open sheet without a thickness.
-PreparedSurface prepare_surface(const SurfaceMesh& surface, double thickness, const std::string& name, const Log& log);
+PreparedSurface prepare_surface(const SurfaceMesh& surface, const PreparationParams& params, const std::string& name,
+                                const Log& log);
 
 }  // namespace softreel

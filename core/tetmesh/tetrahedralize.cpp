@@ -307,8 +307,8 @@ Filling fill(const Job& job) {
 TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name,
                        const Threads& threads, const Log& log, StageTimes& times) {
   require_params(params, name);
-  const PreparedSurface prepared = prepare_surface(surface, params.thickness, name, log);
   const bool embedded = params.mode == TetMode::Embedded;
+  const PreparedSurface prepared = prepare_surface(surface, {params.thickness, embedded}, name, log);
   const std::vector<Solid> solids = embedded ? std::vector<Solid>{} : take_solids(prepared, name, log);
   const Job job{prepared, solids, params, name, threads, log, times};
   Filling filling = fill(job);

@@ -65,12 +65,15 @@ class FirmNodes {
       low[k] = static_cast<std::int32_t>(std::ceil(center[static_cast<int>(k)] - 2 * reach));
       high[k] = static_cast<std::int32_t>(std::floor(center[static_cast<int>(k)] + 2 * reach));
     }
+    const auto squared = [&](int axis, std::int32_t at) { return (at - center[axis]) * (at - center[axis]); };
     for (std::int32_t x = low[0]; x <= high[0]; ++x)
-      for (std::int32_t y = low[1] + ((low[1] ^ x) & 1); y <= high[1]; y += 2)
-        for (std::int32_t z = low[2] + ((low[2] ^ x) & 1); z <= high[2]; z += 2) {
-          const double distance = 0.5 * (Vec3(x, y, z) - center).norm();
-          if (distance <= reach) visit(LatticeNode{x, y, z}, distance);
-        }
+      for (std::int32_t y = low[1] + ((low[1] ^ x) & 1); y <= high[1]; y += 2) {
+        const double beside = squared(0, x) + squared(1, y);
+        if (beside > 4 * reach * reach) continue;
+        for (std::int32_t z = low[2] + ((low[2] ^ x) & 1); z <= high[2]; z += 2)
+          if (const double all = beside + squared(2, z); all <= 4 * reach * reach)
+            visit(LatticeNode{x, y, z}, 0.5 * std::sqrt(all));
+      }
   }
 
  private:
@@ -111,6 +114,51 @@ class FirmNodes {
 /// Nodes to take in, with a triangle near each.
 using TakenIn = std::map<LatticeNode, Index>;
 
+/// Samples spread over a triangle: in rows parallel to its shortest side, from the opposite corner on, so that a sliver
+/// takes few. Row i holds the samples 0 .. last(i).
+class SampleGrid {
+ public:
+  /// Samples at most about `step` apart, m.
+  SampleGrid(const std::array<Vec3, 3>& corners, double step) {
+    std::array<double, 3> opposite;
+    for (std::size_t k = 0; k < 3; ++k) opposite[k] = (corners[(k + 1) % 3] - corners[(k + 2) % 3]).norm();
+    const auto shortest = std::min_element(opposite.begin(), opposite.end());
+    const auto apex = static_cast<std::size_t>(shortest - opposite.begin());
+    apex_ = corners[apex];
+    first_ = corners[(apex + 1) % 3] - apex_;
+    second_ = corners[(apex + 2) % 3] - apex_;
+    const auto steps = [&](double length) { return std::max(1, static_cast<int>(std::ceil(length / step))); };
+    rows_ = steps(*std::max_element(opposite.begin(), opposite.end()));
+    columns_ = steps(*shortest);
+  }
+
+  int rows() const { return rows_; }
+  int last(int row) const { return static_cast<int>((std::int64_t{columns_} * row + rows_ - 1) / rows_); }
+
+  Vec3 point(int row, int place) const {
+    const double down = static_cast<double>(row) / rows_;
+    const double along = row == 0 ? 0.0 : static_cast<double>(place) / last(row);
+    return apex_ + down * ((1 - along) * first_ + along * second_);
+  }
+
+  /// The place in another row, or in a row of another grid of the triangle, that lies as far along as this one.
+  int facing(int row, int place, const SampleGrid& other, int other_row) const {
+    if (last(row) == 0) return 0;
+    return static_cast<int>((2 * std::int64_t{place} * other.last(other_row) + last(row)) / (2 * last(row)));
+  }
+
+  /// Calls visit(point, row, place).
+  template <typename Visit>
+  void visit_samples(const Visit& visit) const {
+    for (int row = 0; row <= rows_; ++row)
+      for (int place = 0; place <= last(row); ++place) visit(point(row, place), row, place);
+  }
+
+ private:
+  Vec3 apex_, first_, second_;
+  int rows_ = 1, columns_ = 1;
+};
+
 /// Finds, in one round, where the surface is lost or falls apart.
 class Round {
  public:
@@ -145,45 +193,37 @@ class Round {
     bool torn = first < 0;
     for (std::size_t k = 1; k < 3; ++k) torn = set_of_vertex(corners[k], part) != first || torn;
     // Between corners that are far apart there may be gaps that no corner sees.
-    if (!torn && steps(triangle, 1.0) > 1)
-      visit_samples(triangle, steps(triangle, 1.0),
-                    [&](const Vec3& p, int, int) { torn = torn || firm_.near(p, part, parts_) != first; });
+    if (const SampleGrid grid = samples(triangle, 1.0); !torn && grid.rows() > 1)
+      grid.visit_samples([&](const Vec3& p, int, int) { torn = torn || firm_.near(p, part, parts_) != first; });
     if (torn) fill(triangle, part);
   }
 
-  /// Into how many parts a triangle's sides are to be cut for steps of at most `step` spacings.
-  int steps(Index triangle, double step) const {
-    const Vec3 &a = corner(triangle, 0), &b = corner(triangle, 1), &c = corner(triangle, 2);
-    const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
-    return std::max(1, static_cast<int>(std::ceil(longest / (step * distance_.lattice.frame.spacing))));
-  }
-
-  /// Calls visit(point, i, j) at corner 0 + i / n to corner 1 + j / n to corner 2, i + j <= n.
-  template <typename Visit>
-  void visit_samples(Index triangle, int n, const Visit& visit) const {
-    const Vec3 &a = corner(triangle, 0), ab = corner(triangle, 1) - a, ac = corner(triangle, 2) - a;
-    for (int i = 0; i <= n; ++i)
-      for (int j = 0; i + j <= n; ++j)
-        visit(Vec3(a + (static_cast<double>(i) / n) * ab + (static_cast<double>(j) / n) * ac), i, j);
+  /// Samples at most `step` spacings apart.
+  SampleGrid samples(Index triangle, double step) const {
+    return {{corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)}, step * distance_.lattice.frame.spacing};
   }
 
   /// Where a triangle is lost or falls apart: samples without a firm node, or beside one of another set, and what lies
-  /// within kWindow samples of them. Row i of the grid, place j.
-  std::vector<std::vector<bool>> find_tears(Index triangle, Index part, int n) {
-    constexpr int kWindow = 4;
-    const auto size = static_cast<std::size_t>(n) + 1;
-    std::vector<std::vector<Index>> sets(size, std::vector<Index>(size, -1));
-    visit_samples(triangle, n, [&](const Vec3& p, int i, int j) { sets[at(i)][at(j)] = firm_.near(p, part, parts_); });
-    std::vector<std::vector<bool>> near_tear(size, std::vector<bool>(size, false));
+  /// within kWindow steps of them. By row and place.
+  std::vector<std::vector<bool>> find_tears(Index part, const SampleGrid& grid) {
+    constexpr int kWindow = 5;
+    std::vector<std::vector<Index>> sets(at(grid.rows() + 1));
+    std::vector<std::vector<bool>> near_tear(at(grid.rows() + 1));
+    for (int i = 0; i <= grid.rows(); ++i) near_tear[at(i)].resize(at(grid.last(i) + 1), false);
+    grid.visit_samples([&](const Vec3& p, int i, int) { sets[at(i)].push_back(firm_.near(p, part, parts_)); });
     const auto mark = [&](int i, int j) {
-      for (int k = std::max(0, i - kWindow); k <= std::min(n, i + kWindow); ++k)
-        for (int l = std::max(0, j - kWindow); l <= std::min(n - k, j + kWindow); ++l) near_tear[at(k)][at(l)] = true;
+      for (int k = std::max(0, i - kWindow); k <= std::min(grid.rows(), i + kWindow); ++k) {
+        const int middle = grid.facing(i, j, grid, k), beside = kWindow - std::abs(k - i);
+        for (int l = std::max(0, middle - beside); l <= std::min(grid.last(k), middle + beside); ++l)
+          near_tear[at(k)][at(l)] = true;
+      }
     };
-    for (int i = 0; i <= n; ++i)
-      for (int j = 0; i + j <= n; ++j) {
+    for (int i = 0; i <= grid.rows(); ++i)
+      for (int j = 0; j <= grid.last(i); ++j) {
         const Index own = sets[at(i)][at(j)];
-        const bool last = i + j == n;
-        if (own < 0 || (!last && (sets[at(i + 1)][at(j)] != own || sets[at(i)][at(j + 1)] != own))) mark(i, j);
+        if (own < 0 || (j < grid.last(i) && sets[at(i)][at(j + 1)] != own) ||
+            (i < grid.rows() && sets[at(i + 1)][at(grid.facing(i, j, grid, i + 1))] != own))
+          mark(i, j);
       }
     return near_tear;
   }
@@ -194,10 +234,15 @@ class Round {
     const Vec3 &a = corner(triangle, 0), area = (corner(triangle, 1) - a).cross(corner(triangle, 2) - a);
     if (!(area.norm() > 0)) return;
     const Vec3 under = -kDepth * distance_.lattice.frame.spacing * area.normalized();
-    const int coarse = steps(triangle, kTearStep), fine = steps(triangle, kStep);
-    const std::vector<std::vector<bool>> near_tear = find_tears(triangle, part, coarse);
-    visit_samples(triangle, fine, [&](const Vec3& p, int i, int j) {
-      if (near_tear[at(i * coarse / fine)][at(j * coarse / fine)]) take_in(p + under, triangle, part);
+    const SampleGrid coarse = samples(triangle, kTearStep), fine = samples(triangle, kStep);
+    if (coarse.rows() == 1) {  // torn as a whole
+      fine.visit_samples([&](const Vec3& p, int, int) { take_in(p + under, triangle, part); });
+      return;
+    }
+    const std::vector<std::vector<bool>> near_tear = find_tears(part, coarse);
+    fine.visit_samples([&](const Vec3& p, int i, int j) {
+      const auto row = static_cast<int>(std::int64_t{i} * coarse.rows() / fine.rows());
+      if (near_tear[at(row)][at(fine.facing(i, j, coarse, row))]) take_in(p + under, triangle, part);
     });
   }
 
@@ -207,7 +252,7 @@ class Round {
       const Index nearest = i < 0 ? -1 : distance_.nearest_triangles[at(i)];
       // Not across a gap to another part: parts stay apart where they are.
       if (nearest >= 0 && parts_.triangle_parts[at(nearest)] != part) return;
-      taken_in_.emplace(node, triangle);
+      taken_in_.try_emplace(node, triangle);
     });
   }
 

@@ -228,6 +228,7 @@ void add_non_manifold(List& list) {
   }
   // Welded at the waist, about one edge of the lattice thick.
   add(list, "HourglassOfOneWaistVertex", std::move(hourglass), 16.0 / 3, 0.06);
+  list.back().edge = 0.1;
 }
 
 void add_parts(List& list) {

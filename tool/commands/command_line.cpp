@@ -1,6 +1,8 @@
 #include "tool/commands/command_line.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 
@@ -18,6 +20,18 @@ namespace {
 constexpr const char* kFooter =
     "Exit status: 0 done; 1 the work failed; 2 the input is wrong or a part is not built in; 130 after Ctrl-C.\n"
     "Fields of shots: softreel fields [PATH]. Examples: the shots in presets/.";
+
+/// Accepts finite numbers above 0; CLI11's own check lets NaN pass and prints its bounds with 300 digits.
+CLI::Validator length() {
+  return {[](std::string& text) {
+            double value = 0;
+            const char* const end = text.data() + text.size();
+            const auto [stopped, code] = std::from_chars(text.data(), end, value);
+            const bool is_length = code == std::errc{} && stopped == end && std::isfinite(value) && value > 0;
+            return is_length ? std::string() : fmt::format("{} is no length. Accepted: a number above 0.", text);
+          },
+          "", "length"};
+}
 
 /// Where results lie, and with which fields.
 void add_place_options(CLI::App& command, ShotOptions& options) {
@@ -165,8 +179,8 @@ void add_mesh_commands(CLI::App& app, Parsed& parsed, Runner& run) {
                    "write in another format")
       ->required();
   tets->add_option("-o,--output", options.output, "file to write: .vtu, .msh (Gmsh 2.2) or .mesh (Medit)")->required();
-  CLI::Option* edge = tets->add_option("--edge", options.edge, "long edge of the lattice, in the mesh's unit")
-                          ->check(CLI::PositiveNumber);
+  CLI::Option* edge =
+      tets->add_option("--edge", options.edge, "long edge of the lattice, in the mesh's unit")->check(length());
   CLI::Option* count = tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
                            ->check(CLI::Range(10L, 100000000L))
                            ->excludes(edge);
@@ -180,8 +194,8 @@ void add_mesh_commands(CLI::App& app, Parsed& parsed, Runner& run) {
           "fill [conforming]")
       ->check(CLI::IsMember({"conforming", "embedded"}));
   tets->add_option("--thickness", options.thickness, "make open sheets this thick, in the mesh's unit after fit")
-      ->check(CLI::PositiveNumber);
-  tets->add_option("--fit", options.fit, "scale the mesh to this height first, m")->check(CLI::PositiveNumber);
+      ->check(length());
+  tets->add_option("--fit", options.fit, "scale the mesh to this height first, m")->check(length());
   tets->add_flag("--optimize", options.optimize, "make the worst dihedral angles better by moving nodes and by flips");
   tets->add_option("--threads", options.threads, "number of threads [all processors]")->check(CLI::Range(1, 1024));
   tets->add_flag("--quiet", options.quiet, "print warnings and errors only");

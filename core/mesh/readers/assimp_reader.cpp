@@ -107,8 +107,10 @@ class SceneMerger {
 Error read_error(const std::string& path, std::string_view said) {
   const std::string_view problem = trimmed(said);
   if (problem.starts_with("No suitable reader"))
-    return unusable_file(path, "no reader knows this format, neither by the name's ending nor by the first bytes",
-                         "Export the mesh in one of these formats");
+    return unusable_file(
+        path,
+        "the mesh cannot be read: no reader knows this format, neither by the name's ending nor by the first bytes",
+        "Export the mesh in one of these formats");
   return unusable_file(path,
                        fmt::format("the mesh cannot be read: {}", problem.substr(0, problem.find_last_not_of('.') + 1)),
                        "Export it again, best as OBJ or PLY");

@@ -57,6 +57,10 @@ SurfaceMesh import_mesh(const std::string& path, const Log& log) {
   }
   if (mesh.polygons.corner_vertices.size() > INT32_MAX || mesh.positions.size() > INT32_MAX)
     throw detail::unusable_file(path, "the mesh has more than 2^31 face corners", "Reduce it");
+  if (mesh.positions.empty())
+    throw detail::unusable_file(path,
+                                "no vertex and no face is in it, so its format may not be the one that its name says",
+                                "Check the file, or export the mesh again");
   if (mesh.polygons.size() == 0)
     throw detail::unusable_file(path, fmt::format("the mesh has {} vertices but no face", mesh.positions.size()),
                                 "Export it with its faces; points and lines alone cannot be filled");
