@@ -23,12 +23,12 @@ constexpr float kSensorWidthMm = 36;
 constexpr double kMargin = 1.14;  ///< picture over what is in it
 constexpr int kSamples = 16;
 
-/// Unit; from what is shown to the camera: `facing`, turned to the side by 30 degrees and raised.
+/// Unit; from what is shown to the camera: `facing`, turned to the side by 36 degrees and raised.
 Vec3 toward_camera(const Vec3& facing) {
   const Vec3 n = facing.normalized();
   const double raised = std::asin(std::clamp(n.y(), -1.0, 1.0));
-  const double azimuth = (std::abs(n.y()) < 0.999 ? std::atan2(n.x(), n.z()) : 0.0) + 30 * kDegree;
-  const double elevation = 14 * kDegree + 0.45 * raised;
+  const double azimuth = (std::abs(n.y()) < 0.999 ? std::atan2(n.x(), n.z()) : 0.0) + 36 * kDegree;
+  const double elevation = 16 * kDegree + 0.45 * raised;
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
 }
 
