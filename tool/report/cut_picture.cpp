@@ -16,7 +16,7 @@ namespace softreel {
 namespace {
 
 const Vec3f kOuter(0.24f, 0.38f, 0.54f), kOuterLine(0.035f, 0.06f, 0.09f), kCutLine(0.10f, 0.06f, 0.03f);
-constexpr float kLineWidth = 1.5f;  ///< pixels
+constexpr float kLineWidth = 1.25f;  ///< pixels
 
 /// Colours of the smallest dihedral angles 0, 10, ... 60 degrees, linear; between them they are blended.
 const std::array<Vec3f, 7> kAngleColors = {

@@ -23,12 +23,13 @@ constexpr float kSensorWidthMm = 36;
 constexpr double kMargin = 1.14;  ///< picture over what is in it
 constexpr int kSamples = 16;
 
-/// Unit; from what is shown to the camera: `facing`, turned to the side by 30 degrees and raised.
+/// Unit; from what is shown to the camera: `facing`, turned to the side by 36 degrees and raised; what faces up or
+/// down is looked at from 56 degrees above or 47 below.
 Vec3 toward_camera(const Vec3& facing) {
   const Vec3 n = facing.normalized();
   const double raised = std::asin(std::clamp(n.y(), -1.0, 1.0));
-  const double azimuth = (std::abs(n.y()) < 0.999 ? std::atan2(n.x(), n.z()) : 0.0) + 30 * kDegree;
-  const double elevation = 14 * kDegree + 0.45 * raised;
+  const double azimuth = (std::abs(n.y()) < 0.999 ? std::atan2(n.x(), n.z()) : 0.0) + 36 * kDegree;
+  const double elevation = 16 * kDegree + (raised > 0 ? 0.45 : 0.7) * raised;
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
 }
 
@@ -70,10 +71,11 @@ Camera framing_camera(const std::vector<MotionMesh>& meshes, const Vec3& toward,
 constexpr float kSky = 0.88f, kGroundAlbedo = 0.6f;
 constexpr double kSunAzimuth = -40 * kDegree, kSunElevation = 50 * kDegree;
 
-SunLight studio_sun(double camera_azimuth) {
-  const double azimuth = camera_azimuth + kSunAzimuth;
-  const Vec3 towards(std::cos(kSunElevation) * std::sin(azimuth), std::sin(kSunElevation),
-                     std::cos(kSunElevation) * std::cos(azimuth));
+/// On the camera's side of the ground, and moved with the camera, so that every view is lit alike.
+SunLight studio_sun(const Vec3& toward) {
+  const double azimuth = std::atan2(toward.x(), toward.z()) + kSunAzimuth;
+  const double height = toward.y() > 0 ? std::sin(kSunElevation) : -std::sin(kSunElevation);
+  const Vec3 towards(std::cos(kSunElevation) * std::sin(azimuth), height, std::cos(kSunElevation) * std::cos(azimuth));
   // kSky = kGroundAlbedo / pi (pi kSky + irradiance sin(elevation))
   const double irradiance = std::numbers::pi * double{kSky} * (1 / double{kGroundAlbedo} - 1) / std::sin(kSunElevation);
   SunLight sun;
@@ -83,12 +85,11 @@ SunLight studio_sun(double camera_azimuth) {
   return sun;
 }
 
-/// The sun moves with the camera, so that every view is lit alike.
 Scene studio_scene(std::vector<MotionMesh> meshes, const Vec3& toward, const PictureSize& size) {
   Scene scene;
   scene.camera = framing_camera(meshes, toward, size);
   scene.meshes = std::move(meshes);
-  scene.suns = {studio_sun(std::atan2(toward.x(), toward.z()))};
+  scene.suns = {studio_sun(toward)};
   scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Vec3f::Constant(kSky);
   if (toward.y() <= 0) return scene;  // seen from below: no ground in between
   Ground ground;

@@ -15,7 +15,7 @@ namespace {
 
 const Vec3f kSurface(0.24f, 0.38f, 0.54f), kTurned(0.42f, 0.10f, 0.50f), kLine(0.035f, 0.06f, 0.09f);
 const Vec3f kBoundary(0.80f, 0.03f, 0.03f), kNonManifold(0.95f, 0.38f, 0.02f), kFlipped(0.50f, 0.05f, 0.60f);
-constexpr float kLineWidth = 1.3f;    ///< pixels
+constexpr float kLineWidth = 1.25f;   ///< pixels
 constexpr float kTubeRadius = 2e-3f;  ///< of the box's diagonal
 
 /// Sides of polygons as sorted keys, so that the diagonals which cut them into triangles can be told apart.
@@ -100,6 +100,35 @@ MotionMesh tubes(const SurfaceMesh& mesh, const std::vector<MeshDamage::Edge>& e
   return to;
 }
 
+std::vector<char> damaged_vertices(const SurfaceMesh& mesh, const MeshDamage& damage) {
+  std::vector<char> damaged(mesh.positions.size(), 0);
+  for (const auto* edges : {&damage.boundary, &damage.non_manifold, &damage.flipped})
+    for (const MeshDamage::Edge& edge : *edges)
+      for (const Index v : edge) damaged[static_cast<std::size_t>(v)] = 1;
+  for (const Index t : damage.turned)
+    for (const Index v : mesh.triangles[static_cast<std::size_t>(t)]) damaged[static_cast<std::size_t>(v)] = 1;
+  return damaged;
+}
+
+/// Where to look against: the way that most of the damage faces, as the triangles round it do; where it faces all ways,
+/// or there is none, the horizontal axis along which the box is shorter.
+Vec3 best_facing(const SurfaceMesh& mesh, const SurfaceMesh& repaired, const MeshDamage& damage, const Bounds& box) {
+  const std::vector<char> damaged = damaged_vertices(mesh, damage);
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
+  for (const auto& [a, b, c] : repaired.triangles) {
+    const auto at = [](Index v) { return static_cast<std::size_t>(v); };
+    if (damaged[at(a)] + damaged[at(b)] + damaged[at(c)] == 0) continue;
+    const std::vector<Vec3>& x = repaired.positions;
+    const Vec3 normal = (x[at(b)] - x[at(a)]).cross(x[at(c)] - x[at(a)]);
+    sum += normal;
+    area += normal.norm();
+  }
+  constexpr double kOneWay = 0.3;
+  if (sum.norm() > kOneWay * area) return sum;
+  return box.size().x() < box.size().z() ? Vec3::UnitX() : Vec3::UnitZ();
+}
+
 std::string describe_shown(const MeshDamage& damage) {
   std::vector<std::string> parts;
   const auto say = [&](std::size_t count, const char* what) {
@@ -128,8 +157,7 @@ std::string draw_surface_picture(const SurfaceMesh& mesh, const SurfaceMesh& rep
   meshes.push_back(tubes(mesh, damage.boundary, kBoundary, place));
   meshes.push_back(tubes(mesh, damage.non_manifold, kNonManifold, place));
   meshes.push_back(tubes(mesh, damage.flipped, kFlipped, place));
-  const Vec3 facing = box.size().x() < box.size().z() ? Vec3::UnitX() : Vec3::UnitZ();
-  draw_in_studio(std::move(meshes), facing, options, threads);
+  draw_in_studio(std::move(meshes), best_facing(mesh, repaired, damage, box), options, threads);
   return fmt::format("{}: {}", options.path, describe_shown(damage));
 }
 

@@ -26,7 +26,7 @@ Colors colors_of(const std::string& path) {
     if (r > g + 12 && g > b + 12 && r < 2 * g) colors.sand += pixel;
     if (r > 2 * g && r > 2 * b) colors.red += pixel;
     if (b > r + 20 && g > r) colors.blue += pixel;
-    if (b > g + 20 && r > g + 20) colors.purple += pixel;
+    if (b >= r && r > g + 20) colors.purple += pixel;
   }
   return colors;
 }
@@ -57,12 +57,12 @@ TEST(DrawCutPicture, ShowsTheInsideInSandAndTheOutsideInBlue) {
 
 TEST(DrawCutPicture, FlatElementsAtTheCutAreRed) {
   PictureOptions options = small_picture("softreel_flat.png");
-  options.cut = "x";
+  options.cut = "z";
   TetMesh mesh = testing::bcc_bar({8, 6, 8}, 1);
   for (Vec3& node : mesh.nodes) node.z() *= 0.02;  // all elements become slivers of a few degrees
-  for (Vec3& node : mesh.nodes) node.x() *= 4;
   draw_cut_picture(mesh, options, Threads(2));
   EXPECT_EQ(colors_of(options.path).sand, 0);
+  EXPECT_GT(colors_of(options.path).red, 0.2);
   std::filesystem::remove(options.path);
 }
 
@@ -96,7 +96,8 @@ SurfaceMesh cube(bool open, bool turned) {
 }
 
 TEST(DrawSurfacePicture, ShowsDamageInColour) {
-  const PictureOptions options = small_picture("softreel_surface.png");
+  PictureOptions options = small_picture("softreel_surface.png");
+  options.size = "320x240";  // tubes along edges are more than a pixel wide
   const auto drawn = [&](const SurfaceMesh& mesh) {
     draw_surface_picture(mesh, cube(mesh.polygons.size() < 6, false), options, Threads(2));
     return colors_of(options.path);
@@ -105,7 +106,7 @@ TEST(DrawSurfacePicture, ShowsDamageInColour) {
   EXPECT_GT(whole.blue, 0.3);
   EXPECT_EQ(whole.red + whole.purple, 0);
   EXPECT_GT(open.red, 0);
-  EXPECT_EQ(open.purple, 0);
+  EXPECT_LT(open.purple, 0.01);  // where red and blue share a pixel
   EXPECT_GT(turned.purple, 0.1);
   EXPECT_EQ(turned.red, 0);
   std::filesystem::remove(options.path);
