@@ -317,8 +317,10 @@ void add_thin(List& list) {
   append(limbs, block(Vec3(0.7, 0.04, 0.04), Vec3(1.5, 0.05, 0.03)));
   append(limbs, block(Vec3(0.04, 0.7, 0.04), Vec3(0.07, 1.5, 0.02)));
   add(list, "LimbsThinnerThanTheEdge", std::move(limbs), kBallVolume + 2 * 1.2 * kThickened * kThickened, 0.06);
+  list.back().thin_volume = kBallVolume + 2 * 1.2 * 0.08 * 0.08;
   append(wall, block(Vec3(1.5, 0.03, 1.5), Vec3(0.013, 0.027, 0.011)));
   add(list, "WallThinnerThanTheEdge", std::move(wall), kBallVolume + (9 - std::numbers::pi) * kThickened, 0.12);
+  list.back().thin_volume = kBallVolume + (9 - std::numbers::pi) * 0.06;
   append(specked, ball(0.05, Vec3(0, 1, 0)));
   add(list, "SpeckOnABall", std::move(specked), kBallVolume);
 }

@@ -22,6 +22,8 @@ struct BrokenSurface {
   // ... or a refusal that says this.
   std::string refusal;
 
+  double thin_volume = 0;  ///< m^3, if `volume` has thickened parts: the volume without that
+
   /// For the tests' names.
   friend std::ostream& operator<<(std::ostream& out, const BrokenSurface& surface) { return out << surface.name; }
 };
