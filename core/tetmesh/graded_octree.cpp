@@ -168,8 +168,16 @@ void GradedOctree::refine(const std::array<Vec3, 3>& triangle, std::int32_t leve
       box, level);
 }
 
-void GradedOctree::refine(const Vec3& point, std::int32_t level) {
-  refine({point, point, point}, level);
+void GradedOctree::refine(const Vec3& point, std::int32_t level, double margin) {
+  const Vec3 p = in_units(point);
+  Bounds box;
+  box.add(p);
+  refine_where(
+      [&](const OctreeCell& cell) {
+        const LatticeNode c = cell.center();
+        return (p - Vec3(c[0], c[1], c[2])).cwiseAbs().maxCoeff() <= (0.5 + margin) * cell.width();
+      },
+      box, level);
 }
 
 std::int32_t GradedOctree::level_at(const Vec3& point) const {

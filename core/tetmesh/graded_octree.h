@@ -34,8 +34,8 @@ class GradedOctree {
 
   /// Splits the leaves near a triangle until they are of `level` or below; neighbours follow.
   void refine(const std::array<Vec3, 3>& triangle, std::int32_t level);
-  /// Splits the leaf that holds a point, and those within half its width of it, likewise.
-  void refine(const Vec3& point, std::int32_t level);
+  /// Splits the leaf that holds a point, and those within `margin` of their widths of it (at most 0.5), likewise.
+  void refine(const Vec3& point, std::int32_t level, double margin);
 
   /// Level of the leaf that holds a point; the top level outside.
   std::int32_t level_at(const Vec3& point) const;

@@ -138,6 +138,14 @@ Vec3 lattice_shift(int step) {
   return shift;
 }
 
+void warn_of_count(const Job& job, double wanted, std::size_t count) {
+  if (std::abs(static_cast<double>(count) / wanted - 1) <= kCountTolerance) return;
+  job.log.warn(
+      fmt::format("body '{}': {} tetrahedra instead of tets = {}: so few follow the lattice in jumps. Set edge "
+                  "instead for a chosen size.",
+                  job.name, count, wanted));
+}
+
 /// Predicts an edge, fills, and corrects it by the cube root of the count's error until that is within 5 %.
 StuffedMesh fill_with_count(const Job& job, double wanted) {
   double edge = edge_for_tets(job.parts.volume(), job.parts.area(), wanted);
@@ -161,22 +169,19 @@ StuffedMesh fill_with_count(const Job& job, double wanted) {
     edge *= std::cbrt(std::max(count, 1.0) / wanted);
   }
   best_lines.pass_on(job.log);
-  if (best_error > kCountTolerance && !best.mesh.tets.empty())
-    job.log.warn(
-        fmt::format("body '{}': {} tetrahedra instead of tets = {}: so few follow the lattice in jumps. Set edge "
-                    "instead for a chosen size.",
-                    job.name, best.mesh.tets.size(), wanted));
+  if (!best.mesh.tets.empty()) warn_of_count(job, wanted, best.mesh.tets.size());
   return best;
 }
 
-/// Fills with graded sizes; says where the budget could not be kept.
-StuffedMesh fill_with_error(const Job& job, double error) {
-  ErrorBudgetParams params;
-  params.error = error;
-  require_size(job, params.base_edge * error);
+/// Fills with graded sizes; says where an error budget could not be kept.
+StuffedMesh fill_with_grades(const Job& job, const TetrahedralizeParams& params) {
+  if (params.edge > 0) require_size(job, params.edge);
+  if (params.error > 0) require_size(job, 12 * params.error);
   GradedFilling filling = [&] {
     const ScopedStage stage(job.times, "tetrahedralize/lattice");
-    return fill_to_error(job.surface, params, job.threads);
+    return fill_graded(job.surface,
+                       {.error = params.error, .tets = static_cast<double>(params.tets), .base_edge = params.edge},
+                       job.threads);
   }();
   StuffedMesh& stuffed = filling.stuffed;
   if (stuffed.mesh.tets.empty()) return std::move(stuffed);
@@ -185,12 +190,15 @@ StuffedMesh fill_with_error(const Job& job, double error) {
   require_all_parts(stuffed, filling.distance, job.parts, job.name, job.log);
   stuffed.mesh.lattice = {};  // none of one size: the hierarchy finds coarse lattices of its own, and converges better
   order_nodes(stuffed);
+  if (params.tets > 0) warn_of_count(job, static_cast<double>(params.tets), stuffed.mesh.tets.size());
+  if (params.error == 0) return std::move(stuffed);
   const ScopedStage stage(job.times, "tetrahedralize/check");
-  if (const double reached = measure_deviation(job.surface, stuffed.mesh, job.threads).two_way(); reached > error)
+  if (const double reached = measure_deviation(job.surface, stuffed.mesh, job.threads).two_way();
+      reached > params.error)
     job.log.warn(
         fmt::format("body '{}': the tetrahedra keep to {:.4g} m of the surface, not to error = {:.4g} m: even edges of "
                     "{:.4g} m do not reach all of it. Accepted: this mesh, as it is. Close or thicken what is thin.",
-                    job.name, reached, error, filling.finest_edge));
+                    job.name, reached, params.error, filling.finest_edge));
   return std::move(stuffed);
 }
 
@@ -285,7 +293,8 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
   const Job job{prepared, parts, box, name, threads, log, times};
   require_volume(job);
   require_inside(job);
-  StuffedMesh stuffed = params.error > 0  ? fill_with_error(job, params.error)
+  const bool graded = params.graded || params.error > 0;
+  StuffedMesh stuffed = graded            ? fill_with_grades(job, params)
                         : params.edge > 0 ? fill_surface(job, params.edge)
                                           : fill_with_count(job, static_cast<double>(params.tets));
   if (stuffed.mesh.tets.empty())
@@ -293,12 +302,12 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
         fmt::format("body '{}': its surface encloses no volume that a lattice with edge {:.4g} m can fill. "
                     "Accepted: a surface that encloses a volume. Close or thicken it, or use a smaller edge.",
                     name, stuffed.mesh.lattice.spacing));
-  if (params.error == 0) {
+  if (!graded) {
     const ScopedStage stage(times, "tetrahedralize/fit");
     fit_boundary(stuffed, prepared, {}, threads);
   }
   require_quality(job, stuffed.mesh,
-                  params.error > 0 ? AngleBounds{kMinGradedDihedral, kMaxGradedDihedral} : AngleBounds{});
+                  graded ? AngleBounds{kMinGradedDihedral, kMaxGradedDihedral} : AngleBounds{});
   return std::move(stuffed.mesh);
 }
 

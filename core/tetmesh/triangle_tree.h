@@ -38,6 +38,9 @@ class TriangleTree {
     return nearest(p, 1e300, [](Index, const Vec3&) { return true; });
   }
 
+  /// The same, quicker from a guess: the place in order() of a triangle that may be near, -1 for none.
+  Nearest nearest_from(const Vec3& p, Index place) const;
+
   const std::vector<Node>& nodes() const { return nodes_; }
   /// Numbers of the triangles in the order of the leaves.
   const std::vector<Index>& order() const { return order_; }
@@ -46,6 +49,8 @@ class TriangleTree {
 
  private:
   void build(std::vector<Vec3>& centroids, Index begin, Index end);
+  template <typename Accept>
+  Nearest search(const Vec3& p, Nearest best, const Accept& accept) const;
 
   std::vector<Node> nodes_;
   std::vector<Index> order_;
@@ -61,6 +66,11 @@ template <typename Accept>
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& p, double squared_limit, const Accept& accept) const {
   Nearest best;
   best.squared_distance = squared_limit;
+  return search(p, best, accept);
+}
+
+template <typename Accept>
+TriangleTree::Nearest TriangleTree::search(const Vec3& p, Nearest best, const Accept& accept) const {
   if (nodes_.empty()) return best;
   struct Entry {
     Index node;
