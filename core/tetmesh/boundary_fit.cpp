@@ -23,6 +23,9 @@ constexpr double kReach = 1.0;
 /// Samples nearer than this share of the tolerance are let be.
 constexpr double kNear = 0.8;
 
+/// A face is drawn by the farthest of its samples, and by about so many others.
+constexpr Index kFaceSamples = 12;
+
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
@@ -167,7 +170,7 @@ class BoundaryFit::Fit {
           if (sample_distances_[s] < near_) continue;
           guess = places[at(face)];
         }
-        const TriangleTree::Nearest found = boundary.nearest_from(samples_[s], guess);
+        const TriangleTree::Nearest found = boundary.nearest_from(samples_[s], guess, near_);
         guess = found.place;
         sample_faces_[s] = found.triangle;
         sample_distances_[s] = found.squared_distance;
@@ -181,7 +184,7 @@ class BoundaryFit::Fit {
                        [&](Index node) { return moved_[at(stars_.numbers[at(node)])]; });
   }
 
-  /// Samples of each face, as a compressed list; without those that are out of reach.
+  /// Samples of each face; without those that are out of reach, and some of many.
   void list_samples() {
     std::vector<double> reach(stars_.faces.size());
     for (std::size_t f = 0; f < reach.size(); ++f) {
@@ -190,11 +193,23 @@ class BoundaryFit::Fit {
                  std::max({(position(a) - position(b)).squaredNorm(), (position(b) - position(c)).squaredNorm(),
                            (position(c) - position(a)).squaredNorm()});
     }
-    const auto visit = [&](const auto& with) {
-      for (std::size_t s = 0; s < samples_.size(); ++s)
-        if (sample_distances_[s] <= reach[at(sample_faces_[s])]) with(at(sample_faces_[s]), static_cast<Index>(s));
-    };
-    face_samples_ = CompressedList(stars_.faces.size(), visit);
+    std::vector<Index> counts(stars_.faces.size(), 0), farthest(stars_.faces.size(), -1);
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+      const std::size_t f = at(sample_faces_[s]);
+      if (sample_distances_[s] > reach[f]) continue;
+      ++counts[f];
+      if (farthest[f] < 0 || sample_distances_[s] > sample_distances_[at(farthest[f])])
+        farthest[f] = static_cast<Index>(s);
+    }
+    face_samples_ = CompressedList(stars_.faces.size(), [&](const auto& with) {
+      std::vector<Index> seen(stars_.faces.size(), 0);
+      for (std::size_t s = 0; s < samples_.size(); ++s) {
+        const std::size_t f = at(sample_faces_[s]);
+        if (sample_distances_[s] > reach[f]) continue;
+        const bool is_turn = seen[f]++ % (counts[f] / kFaceSamples + 1) == 0;
+        if (is_turn || farthest[f] == static_cast<Index>(s)) with(f, static_cast<Index>(s));
+      }
+    });
   }
 
   double squared_distance(const Vec3& p, Index face) const {
@@ -367,10 +382,11 @@ const Vec3* FitMemory::find(const Vec3& before) const {
   return number >= 0 && steps_[at(number)][0] == before ? &steps_[at(number)][1] : nullptr;
 }
 
-std::vector<Vec3> sample_surface(const SurfaceMesh& surface, double step) {
+std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const TriangleTree& tree, double step) {
   std::vector<Vec3> samples;
   std::vector<bool> taken(surface.positions.size(), false);
-  for (const Triangle& triangle : surface.triangles) {
+  for (const Index t : tree.order()) {
+    const Triangle& triangle = surface.triangles[at(t)];
     std::array<Vec3, 3> x;
     double longest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -408,7 +424,7 @@ void fit_boundary(StuffedMesh& stuffed, const SurfaceMesh& surface, const Bounda
                   const Threads& threads) {
   if (stuffed.mesh.tets.empty()) return;
   const TriangleTree tree(surface.positions, surface.triangles);
-  const std::vector<Vec3> samples = sample_surface(surface, 0.5 * stuffed.mesh.lattice.spacing);
+  const std::vector<Vec3> samples = sample_surface(surface, tree, 0.5 * stuffed.mesh.lattice.spacing);
   const BoundaryFit fit(stuffed, tree, samples, params, threads);
 }
 

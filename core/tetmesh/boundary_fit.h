@@ -21,8 +21,9 @@ struct BoundaryFitParams {
   double tolerance = 0.15;      ///< spacings: what is nearer than this moves no node
 };
 
-/// Points of a surface: its used vertices, and a grid with steps of at most `step` over triangles with longer edges.
-std::vector<Vec3> sample_surface(const SurfaceMesh& surface, double step);
+/// Points of a surface: its used vertices, and a grid with steps of at most `step` over triangles with longer edges. In
+/// the order of `tree`, so that neighbours are near in memory.
+std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const TriangleTree& tree, double step);
 
 /// Where the boundary and the surface are apart.
 struct BoundaryGap {

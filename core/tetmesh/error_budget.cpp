@@ -68,7 +68,7 @@ class Filling {
         frame_{used_bounds(surface).center(), std::ldexp(base_edge_, -params.finer)},
         octree_(frame_, used_bounds(surface), params.finer + params.coarser),
         sampler_(surface.positions, surface.triangles, frame_),
-        samples_(sample_surface(surface, kSampleStep * error_)) {
+        samples_(sample_surface(surface, sampler_.tree(), kSampleStep * error_)) {
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
       octree_.refine(corners(surface.positions, surface.triangles[t]), params.finer);
   }
@@ -81,6 +81,7 @@ class Filling {
       filling = fill();
       std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
       if (gaps.empty()) gaps = find_gaps(filling.stuffed, kCertain * error_);
+      filling.is_kept = gaps.empty();
       if (round + 1 == rounds || !refine(filling.stuffed, gaps, 1e300)) break;
     }
     return filling;
@@ -127,10 +128,11 @@ class Filling {
     return best;
   }
 
-  GradedFilling fill() const {
+  GradedFilling fill() {
     GradedFilling filling;
     const LatticeNodeSet nodes = octree_.nodes();
-    filling.distance = sampler_.sample(nodes, std::ldexp(base_edge_, params_.coarser), threads_);
+    filling.distance = sampler_.sample(nodes, octree_.widths(nodes), known_, threads_);
+    known_ = filling.distance;
     filling.stuffed = stuff_octree(octree_, nodes, filling.distance.lattice.values);
     mend_boundary(filling.stuffed);
     filling.stuffed.mesh.lattice = {frame_.origin, base_edge_};
@@ -211,6 +213,7 @@ class Filling {
   std::vector<Vec3> samples_;
   FitMemory memory_;
   GradedFilling last_filling_;
+  SurfaceDistance known_;  ///< of the filling before
 };
 
 }  // namespace

@@ -23,6 +23,7 @@ struct GradedFilling {
   StuffedMesh stuffed;       ///< its lattice is that of the base edge
   SurfaceDistance distance;  ///< stuffed.lattice_nodes are its nodes
   double finest_edge = 0;    ///< m
+  bool is_kept = false;      ///< the error: measured, not only hoped for
 };
 
 /// Fills, fits, measures, and refines where the boundary and the surface are furthest apart: with `error` until they are

@@ -200,6 +200,21 @@ LatticeNodeSet GradedOctree::nodes() const {
   return set;
 }
 
+std::vector<double> GradedOctree::widths(const LatticeNodeSet& set) const {
+  std::vector<double> widths(set.nodes().size(), 0.0);
+  for (const OctreeCell& cell : cells_) {
+    if (cell.first_child >= 0) continue;
+    const auto widen = [&](const LatticeNode& node) {
+      double& width = widths[at(set.find(node))];
+      width = std::max(width, 0.5 * frame_.spacing * cell.width());
+    };
+    widen(cell.center());
+    for (std::int32_t side = 0; side < 2; ++side)
+      for (const LatticeNode& corner : face_corners(cell, 0, side)) widen(corner);
+  }
+  return widths;
+}
+
 void GradedOctree::visit_tets(const LatticeNodeSet& set, const VisitTet& visit) const {
   for (const OctreeCell& cell : cells_) {
     if (cell.first_child >= 0) continue;

@@ -47,6 +47,9 @@ class GradedOctree {
   /// Corners and centres of all leaves, numbered.
   LatticeNodeSet nodes() const;
 
+  /// Per node of `set`, which is nodes(): the width of the largest leaf it belongs to, m. No edge there is longer.
+  std::vector<double> widths(const LatticeNodeSet& set) const;
+
   /// Calls visit(nodes) for all tetrahedra between leaves: positive orientation, every face shared by two or on the
   /// outside. `set`: nodes(). Their dihedral angles are 45, 60, 90 or 120 degrees.
   void visit_tets(const LatticeNodeSet& set, const std::function<void(const std::array<LatticeNode, 4>&)>& visit) const;

@@ -185,13 +185,14 @@ StuffedMesh fill_with_grades(const Job& job, const TetrahedralizeParams& params)
   }();
   StuffedMesh& stuffed = filling.stuffed;
   if (stuffed.mesh.tets.empty()) return std::move(stuffed);
+  const std::size_t filled = stuffed.mesh.tets.size();
   stuffed.mesh.lattice.spacing = filling.finest_edge;  // what is small, and what is too thin, is judged by that
   drop_crumbs(stuffed, filling.distance, job.parts, job.name, job.log);
   require_all_parts(stuffed, filling.distance, job.parts, job.name, job.log);
   stuffed.mesh.lattice = {};  // none of one size: the hierarchy finds coarse lattices of its own, and converges better
   order_nodes(stuffed);
   if (params.tets > 0) warn_of_count(job, static_cast<double>(params.tets), stuffed.mesh.tets.size());
-  if (params.error == 0) return std::move(stuffed);
+  if (params.error == 0 || (filling.is_kept && stuffed.mesh.tets.size() == filled)) return std::move(stuffed);
   const ScopedStage stage(job.times, "tetrahedralize/check");
   if (const double reached = measure_deviation(job.surface, stuffed.mesh, job.threads).two_way();
       reached > params.error)

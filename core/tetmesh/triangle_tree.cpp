@@ -52,7 +52,7 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& points, const std::vector<Tr
   corners_.swap(sorted);
 }
 
-TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place) const {
+TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, double squared_enough) const {
   Nearest guess;
   if (place >= 0) {
     const auto& [a, b, c] = corners_[static_cast<std::size_t>(place)];
@@ -61,7 +61,7 @@ TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place) con
     guess.squared_distance = (guess.point - p).squaredNorm();
     guess.place = place;
   }
-  return search(p, guess, [](Index, const Vec3&) { return true; });
+  return search(p, guess, squared_enough, [](Index, const Vec3&) { return true; });
 }
 
 void TriangleTree::build(std::vector<Vec3>& centroids, Index begin, Index end) {
