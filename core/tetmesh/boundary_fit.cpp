@@ -76,13 +76,6 @@ class BoundaryFit::Fit {
     for (std::size_t b = 0; b < before.size(); ++b) memory_->add(before[b], position_of(b));
   }
 
-  double largest_gap() const {
-    double squared = 0;
-    for (const double sample : sample_distances_) squared = std::max(squared, sample);
-    for (const Probe& probe : probes_) squared = std::max(squared, probe.squared);
-    return std::sqrt(squared);
-  }
-
   std::vector<BoundaryGap> gaps(double limit) const {
     std::vector<BoundaryGap> gaps;
     const double squared = limit * limit;
@@ -95,7 +88,7 @@ class BoundaryFit::Fit {
       if (probes_[p].place < 0 || probes_[p].squared <= squared) return;
       const auto& [a, b, c] = tree_.corners()[at(probes_[p].place)];
       const Vec3 x = probe_point(p);
-      gaps.push_back({nearest_on_triangle(x, a, b, c), x, face});
+      gaps.push_back({nearest_on_triangle(x, a, b, c), x, face, true});
     };
     for (std::size_t f = 0; f < stars_.faces.size(); ++f) add_probe(stars_.nodes.size() + stars_.edges.size() + f, stars_.faces[f].nodes);
     for (std::size_t e = 0; e < stars_.edges.size(); ++e)
@@ -411,10 +404,6 @@ BoundaryFit::BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const s
 }
 
 BoundaryFit::~BoundaryFit() = default;
-
-double BoundaryFit::largest_gap() const {
-  return fit_->largest_gap();
-}
 
 std::vector<BoundaryGap> BoundaryFit::gaps(double limit) const {
   return fit_->gaps(limit);

@@ -29,6 +29,7 @@ std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const TriangleTree&
 struct BoundaryGap {
   Vec3 on_surface, on_boundary;
   Triangle face;  ///< of the boundary, at the gap; of nodes and edges too, with equal ones
+  bool from_boundary = false;  ///< the point of the boundary was given, that of the surface is nearest to it
 };
 
 /// Where nodes were before and after an earlier fit, so that a fit of a similar mesh begins there.
@@ -60,8 +61,6 @@ class BoundaryFit {
 
   /// Samples, nodes, and middles of edges and faces that are further than `limit` (m) from the other side.
   std::vector<BoundaryGap> gaps(double limit) const;
-  /// The largest of their distances, m.
-  double largest_gap() const;
 
  private:
   class Fit;

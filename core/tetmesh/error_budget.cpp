@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mesh/mesh_topology.h"
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
 #include "core/tetmesh/farthest_point.h"
@@ -16,7 +17,7 @@ namespace {
 constexpr double kBaseEdge = 12.0;
 
 /// A mesh of base edges alone has so many tetrahedra per square of them, and takes this share of the wanted number.
-constexpr double kTetsPerSquare = 12.0, kBaseShare = 0.16;
+constexpr double kTetsPerSquare = 12.0, kBaseShare = 0.11;
 
 /// Samples nearer than this share of the budget are let be; what lies between them may be further away.
 constexpr double kEnough = 0.85;
@@ -29,11 +30,27 @@ constexpr double kCertain = 0.98;
 constexpr int kFirstRounds = 2, kFirstSweeps = 2, kSweeps = 4;
 constexpr double kFirstLimit = 1.5;
 
-/// With a count, gaps of more than this share of the largest are refined in one round.
-constexpr double kWorstShare = 0.7;
+/// So often the error is lowered for one refinement.
+constexpr int kErrorSteps = 8;
+
+/// So many fillings a count may take, and so many of them once it is met, of which the one with the least distance is
+/// kept.
+constexpr int kCountRounds = 20, kMendingRounds = 4;
+
+/// Of eight new cells one takes the place of the leaf that was split.
+constexpr double kNewLeaves = 0.875;
+
+/// Of the tetrahedra that are missing, so many are asked for at once.
+constexpr double kStepShare = 0.6;
+
+/// The error falls with the number of tetrahedra to about this power; met on smooth and sharp bodies alike.
+constexpr double kErrorOverCount = 0.75;
 
 /// How near to the wanted number is near enough.
-constexpr double kCountTolerance = 0.03;
+constexpr double kCountTolerance = 0.05;
+
+/// Nearer to a rim than this, in budgets, is on it.
+constexpr double kOnRim = 1e-6;
 
 /// Samples are this many budgets apart.
 constexpr double kSampleStep = 2.0;
@@ -68,7 +85,8 @@ class Filling {
         frame_{used_bounds(surface).center(), std::ldexp(base_edge_, -params.finer)},
         octree_(frame_, used_bounds(surface), params.finer + params.coarser),
         sampler_(surface.positions, surface.triangles, frame_),
-        samples_(sample_surface(surface, sampler_.tree(), kSampleStep * error_)) {
+        samples_(sample_surface(surface, sampler_.tree(), kSampleStep * error_)),
+        rims_(find_rims(surface)) {
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
       octree_.refine(corners(surface.positions, surface.triangles[t]), params.finer);
   }
@@ -80,9 +98,13 @@ class Filling {
     for (int round = 0; round < rounds; ++round) {
       filling = fill();
       std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
-      if (gaps.empty()) gaps = find_gaps(filling.stuffed, kCertain * error_);
+      const bool is_certain = gaps.empty();
+      if (is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
       filling.is_kept = gaps.empty();
-      if (round + 1 == rounds || !refine(filling.stuffed, gaps, 1e300)) break;
+      if (round + 1 == rounds || refine(filling.stuffed, gaps, 1e300)) continue;
+      // Samples that no size reaches hide what lies between others.
+      if (!is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
+      if (is_certain || !refine(filling.stuffed, gaps, 1e300)) break;
     }
     return filling;
   }
@@ -92,40 +114,56 @@ class Filling {
     return {points[at(triangle[0])], points[at(triangle[1])], points[at(triangle[2])]};
   }
 
-  /// Refines the worst places as far as the count allows; where that was too far, again from the round before with
-  /// less.
+  /// Keeps to an error, then to smaller and smaller ones, until the count is reached: the last refinement takes the
+  /// worst places, as many as the count allows. Where that was too far, again from the round before with less.
   GradedFilling run_to_count() {
-    constexpr int kRounds = 16;
-    GradedFilling filling, best;
-    double best_miss = 1e300, before = 0, granted = 0, tets_per_leaf = kTetsPerSquare / 2;
+    GradedFilling best;
+    double best_gap = 1e300, best_miss = 1e300, before = 0, granted = 0, tets_per_leaf = kTetsPerSquare / 2;
     GradedOctree last = octree_;
     std::vector<BoundaryGap> gaps;
-    for (int round = 0, grown = 0; round < kRounds; ++round) {
-      filling = fill();
+    int mended = 0;
+    for (int round = 0, grown = 0; round < kCountRounds && mended < kMendingRounds; ++round) {
+      GradedFilling filling = fill();
       const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
       if (granted > 0 && count > before) tets_per_leaf *= std::clamp((count - before) / granted, 0.25, 4.0);
+      const double miss = std::abs(count / params_.tets - 1);
       const bool too_many = count > (1 + kCountTolerance) * params_.tets;
-      if (!too_many || grown == 0) gaps = fit(filling.stuffed, grown++);
-      if (const double miss = std::abs(count / params_.tets - 1); miss < best_miss) {
+      if (too_many && best_miss < kCountTolerance) ++mended;
+      if (!too_many || before == 0) gaps = fit(filling.stuffed, grown++);
+      double gap = 1e300;
+      if (miss < kCountTolerance) {
+        gaps = find_gaps(filling.stuffed, kCertain * error_);
+        gap = widest(gaps);
+        ++mended;
+      }
+      if (best_miss < kCountTolerance ? gap < best_gap : miss < best_miss) {
+        best_gap = gap;
         best_miss = miss;
         best = filling;
-        if (too_many) fit(best.stuffed, grown);
       }
-      if (best_miss < kCountTolerance) break;
+      if (too_many && before == 0) break;
       if (too_many) {
-        if (before == 0) break;
         octree_ = last;
       } else {
-        if (gaps.empty()) gaps = find_gaps(filling.stuffed, 0.0);
         last = octree_;
-        last_filling_ = filling;
+        last_filling_ = std::move(filling);
         before = count;
       }
-      const double cells = static_cast<double>(octree_.cells().size());
-      if (!refine(last_filling_.stuffed, gaps, (params_.tets - before) / tets_per_leaf)) break;
-      granted = tets_per_leaf * 0.875 * (static_cast<double>(octree_.cells().size()) - cells);
+      // In ever smaller steps: what a refinement spoils is mended by the next one.
+      const double missing = (1 + 0.8 * kCountTolerance) * params_.tets - before;
+      const double share = missing > 0.12 * params_.tets ? kStepShare : 1.0;
+      const auto cells = static_cast<double>(octree_.cells().size());
+      if (missing <= 0 || !refine_further(gaps, share * missing / tets_per_leaf)) break;
+      granted = tets_per_leaf * kNewLeaves * (static_cast<double>(octree_.cells().size()) - cells);
     }
+    if (best_miss >= kCountTolerance && !best.stuffed.mesh.tets.empty()) fit(best.stuffed, kFirstRounds);
     return best;
+  }
+
+  static double widest(const std::vector<BoundaryGap>& gaps) {
+    double width = 0;
+    for (const BoundaryGap& gap : gaps) width = std::max(width, (gap.on_surface - gap.on_boundary).norm());
+    return width;
   }
 
   GradedFilling fill() {
@@ -147,7 +185,6 @@ class Filling {
     fit_params.sweeps = round < kFirstRounds ? kFirstSweeps : kSweeps;
     if (stuffed.mesh.tets.empty()) return everywhere();
     const BoundaryFit fitted(stuffed, sampler_.tree(), samples_, fit_params, threads_, &memory_);
-    if (params_.tets > 0 && round >= kFirstRounds) return fitted.gaps(kWorstShare * fitted.largest_gap());
     return fitted.gaps((round < kFirstRounds ? kFirstLimit : kEnough) * error_);
   }
 
@@ -169,13 +206,57 @@ class Filling {
       gaps.push_back({p, found.point, faces[at(found.triangle)]});
     }
     for (const Vec3& p : find_far_points(stuffed.mesh.nodes, faces, sampler_.tree(), limit, threads_))
-      gaps.push_back({sampler_.tree().nearest(p).point, p, faces[at(boundary.nearest(p).triangle)]});
+      gaps.push_back({sampler_.tree().nearest(p).point, p, faces[at(boundary.nearest(p).triangle)], true});
     return gaps;
+  }
+
+  /// Refines the last filling at gaps, or, where there are none that can be refined, for smaller and smaller errors.
+  bool refine_further(std::vector<BoundaryGap>& gaps, double more_leaves) {
+    if (refine(last_filling_.stuffed, gaps, more_leaves)) return true;
+    const auto count = static_cast<double>(last_filling_.stuffed.mesh.tets.size());
+    for (int step = 0; step < kErrorSteps; ++step) {
+      gaps = find_gaps(last_filling_.stuffed, kCertain * error_);
+      if (refine(last_filling_.stuffed, gaps, more_leaves)) return true;
+      error_ *= std::clamp(std::pow(count / params_.tets, kErrorOverCount), 0.6, 0.95);
+    }
+    return false;
+  }
+
+  /// Sides of triangles that an open surface ends at, three bits a triangle; empty if it is closed.
+  static std::vector<std::uint8_t> find_rims(const SurfaceMesh& surface) {
+    std::vector<std::uint8_t> rims(surface.triangles.size(), 0);
+    const std::vector<Triangle> welded = welded_triangles(surface);
+    const std::vector<HalfEdge> sides = sorted_half_edges(welded);
+    bool any = false;
+    for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
+      if (edge.size() != 1) return;
+      any = true;
+      const Triangle& triangle = welded[at(edge[0].triangle)];
+      for (std::size_t k = 0; k < 3; ++k)
+        if (triangle[k] != edge[0].low && triangle[k] != edge[0].high)
+          rims[at(edge[0].triangle)] |= static_cast<std::uint8_t>(1U << k);
+    });
+    if (!any) rims.clear();
+    return rims;
+  }
+
+  /// Whether a point of the boundary closes a hole: what is nearest to it is the hole's rim. No size mends that.
+  bool is_in_hole(const BoundaryGap& gap) const {
+    if (rims_.empty() || !gap.from_boundary) return false;
+    const TriangleTree::Nearest found = sampler_.tree().nearest(gap.on_boundary);
+    const std::array<Vec3, 3> x = corners(surface_.positions, surface_.triangles[at(found.triangle)]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((rims_[at(found.triangle)] & (1U << k)) == 0) continue;
+      const Vec3 &a = x[(k + 1) % 3], &b = x[(k + 2) % 3];
+      if ((nearest_on_triangle(found.point, a, b, b) - found.point).norm() < kOnRim * error_) return true;
+    }
+    return false;
   }
 
   /// Halves the largest leaves at each gap, the widest gaps first, until there are so many leaves more. False if there
   /// is none that may be halved.
   bool refine(const StuffedMesh& stuffed, std::vector<BoundaryGap>& gaps, double more_leaves) {
+    std::erase_if(gaps, [&](const BoundaryGap& gap) { return is_in_hole(gap); });
     const auto width = [](const BoundaryGap& gap) { return (gap.on_surface - gap.on_boundary).squaredNorm(); };
     std::stable_sort(gaps.begin(), gaps.end(),
                      [&](const BoundaryGap& a, const BoundaryGap& b) { return width(a) > width(b); });
@@ -197,7 +278,7 @@ class Filling {
     }
     const std::size_t before = octree_.cells().size();
     for (const Wish& wish : wishes) {
-      if (0.875 * static_cast<double>(octree_.cells().size() - before) >= more_leaves) break;
+      if (kNewLeaves * static_cast<double>(octree_.cells().size() - before) >= more_leaves) break;
       octree_.refine(wish.point, wish.level, 0.0);
     }
     return octree_.cells().size() > before;
@@ -213,6 +294,7 @@ class Filling {
   std::vector<Vec3> samples_;
   FitMemory memory_;
   GradedFilling last_filling_;
+  std::vector<std::uint8_t> rims_;
   SurfaceDistance known_;  ///< of the filling before
 };
 
