@@ -375,10 +375,10 @@ const Vec3* FitMemory::find(const Vec3& before) const {
   return number >= 0 && steps_[at(number)][0] == before ? &steps_[at(number)][1] : nullptr;
 }
 
-std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const TriangleTree& tree, double step) {
+std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const std::vector<Index>& order, double step) {
   std::vector<Vec3> samples;
   std::vector<bool> taken(surface.positions.size(), false);
-  for (const Index t : tree.order()) {
+  for (const Index t : order) {
     const Triangle& triangle = surface.triangles[at(t)];
     std::array<Vec3, 3> x;
     double longest = 0;
@@ -413,7 +413,7 @@ void fit_boundary(StuffedMesh& stuffed, const SurfaceMesh& surface, const Bounda
                   const Threads& threads) {
   if (stuffed.mesh.tets.empty()) return;
   const TriangleTree tree(surface.positions, surface.triangles);
-  const std::vector<Vec3> samples = sample_surface(surface, tree, 0.5 * stuffed.mesh.lattice.spacing);
+  const std::vector<Vec3> samples = sample_surface(surface, tree.order(), 0.5 * stuffed.mesh.lattice.spacing);
   const BoundaryFit fit(stuffed, tree, samples, params, threads);
 }
 

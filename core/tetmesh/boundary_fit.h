@@ -22,8 +22,8 @@ struct BoundaryFitParams {
 };
 
 /// Points of a surface: its used vertices, and a grid with steps of at most `step` over triangles with longer edges. In
-/// the order of `tree`, so that neighbours are near in memory.
-std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const TriangleTree& tree, double step);
+/// the order of the triangles in `order`, which should be that of a tree: neighbours are to be near in memory.
+std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const std::vector<Index>& order, double step);
 
 /// Where the boundary and the surface are apart.
 struct BoundaryGap {

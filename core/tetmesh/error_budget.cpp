@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/mesh/mesh_topology.h"
 #include "core/tetmesh/boundary_fit.h"
@@ -9,6 +10,7 @@
 #include "core/tetmesh/farthest_point.h"
 #include "core/tetmesh/graded_octree.h"
 #include "core/tetmesh/graded_stuffing.h"
+#include "core/tetmesh/hidden_surface.h"
 
 namespace softreel {
 namespace {
@@ -85,7 +87,8 @@ class Filling {
         frame_{used_bounds(surface).center(), std::ldexp(base_edge_, -params.finer)},
         octree_(frame_, used_bounds(surface), params.finer + params.coarser),
         sampler_(surface.positions, surface.triangles, frame_),
-        samples_(sample_surface(surface, sampler_.tree(), kSampleStep * error_)),
+        visible_(find_visible(surface, sampler_, error_, threads)),
+        samples_(sample_surface(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)),
         rims_(find_rims(surface)) {
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
       octree_.refine(corners(surface.positions, surface.triangles[t]), params.finer);
@@ -112,6 +115,25 @@ class Filling {
  private:
   static std::array<Vec3, 3> corners(const std::vector<Vec3>& points, const Triangle& triangle) {
     return {points[at(triangle[0])], points[at(triangle[1])], points[at(triangle[2])]};
+  }
+
+  /// The triangles in the order of the tree; those that are not in it as they come.
+  static std::vector<Index> order_of(const SurfaceMesh& visible, const TriangleTree& tree) {
+    if (visible.triangles.size() == tree.order().size()) return tree.order();
+    std::vector<Index> order(visible.triangles.size());
+    std::iota(order.begin(), order.end(), 0);
+    return order;
+  }
+
+  /// What the boundary has to follow; the surface as it is, unless it overlaps itself.
+  static SurfaceMesh find_visible(const SurfaceMesh& surface, const DistanceSampler& sampler, double error,
+                                  const Threads& threads) {
+    if (sampler.overlaps())
+      return without_hidden(surface, std::vector<std::uint8_t>(surface.triangles.size(), 1), error, threads);
+    SurfaceMesh visible;
+    visible.positions = surface.positions;
+    visible.triangles = surface.triangles;
+    return visible;
   }
 
   /// Keeps to an error, then to smaller and smaller ones, until the count is reached: the last refinement takes the
@@ -201,7 +223,7 @@ class Filling {
     for (const BoundaryFace& face : find_surface_faces(stuffed)) faces.push_back(face.nodes);
     const TriangleTree boundary(stuffed.mesh.nodes, faces);
     std::vector<BoundaryGap> gaps;
-    for (const Vec3& p : find_far_points(surface_.positions, surface_.triangles, boundary, limit, threads_)) {
+    for (const Vec3& p : find_far_points(visible_.positions, visible_.triangles, boundary, limit, threads_)) {
       const TriangleTree::Nearest found = boundary.nearest(p);
       gaps.push_back({p, found.point, faces[at(found.triangle)]});
     }
@@ -291,6 +313,7 @@ class Filling {
   LatticeFrame frame_;
   GradedOctree octree_;
   DistanceSampler sampler_;
+  SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap
   std::vector<Vec3> samples_;
   FitMemory memory_;
   GradedFilling last_filling_;

@@ -139,21 +139,48 @@ double farthest_distance(const std::vector<Vec3>& points, const std::vector<Tria
   return *std::max_element(farthest.begin(), farthest.end());
 }
 
+namespace {
+
+/// Calls with(triangle, its far points) for all triangles, each chunk of them in order.
+template <typename With>
+void visit_far(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles, const TriangleTree& tree,
+               double limit, const Threads& threads, const With& with) {
+  const std::vector<Probe> probes = probe_points(points, triangles, tree, threads);
+  const Search search(tree, limit, kSmallest * mean_edge(points, triangles, tree));
+  threads.for_chunks(
+      static_cast<std::int64_t>(triangles.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<Vec3> far;
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+          const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
+          far.clear();
+          search.collect(corner(0), corner(1), corner(2), far);
+          with(t, far);
+        }
+      });
+}
+
+}  // namespace
+
 std::vector<Vec3> find_far_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                   const TriangleTree& tree, double limit, const Threads& threads) {
   if (tree.nodes().empty() || triangles.empty()) return {};
-  const std::vector<Probe> probes = probe_points(points, triangles, tree, threads);
-  const Search search(tree, limit, kSmallest * mean_edge(points, triangles, tree));
   const auto n = static_cast<std::int64_t>(triangles.size());
   std::vector<std::vector<Vec3>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
-  threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-      const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
-      search.collect(corner(0), corner(1), corner(2), chunks[static_cast<std::size_t>(begin / kGrain)]);
-    }
+  visit_far(points, triangles, tree, limit, threads, [&](std::size_t t, const std::vector<Vec3>& of_triangle) {
+    std::vector<Vec3>& chunk = chunks[t / static_cast<std::size_t>(kGrain)];
+    chunk.insert(chunk.end(), of_triangle.begin(), of_triangle.end());
   });
   std::vector<Vec3> far;
   for (const std::vector<Vec3>& chunk : chunks) far.insert(far.end(), chunk.begin(), chunk.end());
+  return far;
+}
+
+std::vector<std::uint8_t> find_far_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                             const TriangleTree& tree, double limit, const Threads& threads) {
+  std::vector<std::uint8_t> far(triangles.size(), 0);
+  if (tree.nodes().empty() || triangles.empty()) return far;
+  visit_far(points, triangles, tree, limit, threads,
+            [&](std::size_t t, const std::vector<Vec3>& of_triangle) { far[t] = of_triangle.empty() ? 0 : 1; });
   return far;
 }
 

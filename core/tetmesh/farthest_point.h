@@ -27,4 +27,8 @@ double farthest_distance(const std::vector<Vec3>& points, const std::vector<Tria
 std::vector<Vec3> find_far_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                   const TriangleTree& tree, double limit, const Threads& threads);
 
+/// Per triangle 1 if it has such a point, else 0.
+std::vector<std::uint8_t> find_far_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                             const TriangleTree& tree, double limit, const Threads& threads);
+
 }  // namespace softreel

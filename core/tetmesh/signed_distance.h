@@ -42,6 +42,8 @@ class DistanceSampler {
                          const Threads& threads) const;
 
   const TriangleTree& tree() const { return tree_; }
+  /// Whether the surface is closed and goes more than once round some place on the lattice's rows.
+  bool overlaps() const { return crossings_ && crossings_->overlaps(); }
 
  private:
   LatticeFrame frame_;

@@ -142,10 +142,14 @@ void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   CLI::Option* count = tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
                            ->check(CLI::Range(10L, 100000000L))
                            ->excludes(edge);
-  tets->add_option("--error", options.error,
-                   "distance to the surface to keep to: in the mesh's unit, or as 0.3% of its box's diagonal; graded")
-      ->excludes(edge)
-      ->excludes(count);
+  CLI::Option* error = tets->add_option("--error", options.error,
+                                        "distance to the surface to keep to: in the mesh's unit, or as 0.3% of its "
+                                        "box's diagonal; always graded")
+                           ->excludes(edge)
+                           ->excludes(count);
+  tets->add_flag("--graded", options.graded,
+                 "with --tets: fine where the surface asks for it and coarse inside; with --edge: coarse inside only")
+      ->excludes(error);
   tets->add_option("--thickness", options.thickness, "make open sheets this thick, in the mesh's unit after fit")
       ->check(CLI::PositiveNumber);
   tets->add_option("--fit", options.fit, "scale the mesh to this height first, m")->check(CLI::PositiveNumber);

@@ -78,7 +78,7 @@ struct TetrahedralizeOptions {
   double edge = 0, fit = 0, thickness = 0;
   long tets = 0;
   int threads = 0;
-  bool quiet = false, json = false;
+  bool graded = false, quiet = false, json = false;
 };
 
 /// Fills a surface and writes the tetrahedra.

@@ -98,6 +98,7 @@ int run_tetrahedralize(const TetrahedralizeOptions& options) {
   TetrahedralizeParams params{.edge = options.edge,
                               .tets = options.tets,
                               .error = parse_error_budget(options.error, used_bounds(result.surface).diagonal()),
+                              .graded = options.graded,
                               .thickness = options.thickness};
   if (params.edge == 0 && params.tets == 0 && params.error == 0) params.tets = 20000;
   const auto start = std::chrono::steady_clock::now();
