@@ -1,252 +1,423 @@
 #include "core/tetmesh/boundary_fit.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <span>
 
-#include "core/tetmesh/boundary_mending.h"
+#include <Eigen/Dense>
+
+#include "core/tetmesh/boundary_stars.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 512;
+constexpr std::int64_t kGrain = 256;
 
-/// A node goes no further than this towards its target, in spacings: what is further away is not its own surface.
-constexpr double kReach = 1.5;
+/// A node goes no further than this towards the nearest point of the surface, and a face is drawn to no sample further
+/// away, in lengths of their longest edge: what is further away is not their own surface.
+constexpr double kReach = 1.0;
 
-/// Nearer to its target than this, in spacings, a node stays.
-constexpr double kArrived = 1e-4;
+/// Samples nearer than this share of the tolerance are let be.
+constexpr double kNear = 0.8;
 
-/// A pull must bring the faces round its node nearer to the surface, to this share of their distance.
-constexpr double kWorthwhile = 0.95;
+/// A face is drawn by the farthest of its samples, and by about so many others.
+constexpr Index kFaceSamples = 12;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Cosines of the dihedral angles of some elements; `positive` if all have volume.
-struct CosineRange {
-  double low = 1, high = -1;
-  bool positive = true;
-
-  void add(const std::array<Vec3, 4>& x) {
-    const Vec3 ab = x[1] - x[0], ac = x[2] - x[0], ad = x[3] - x[0], bc = x[2] - x[1], bd = x[3] - x[1];
-    const Vec3 abc = ac.cross(ab);
-    const std::array<Vec3, 4> normals{bc.cross(bd), ad.cross(ac), ab.cross(ad), abc};
-    if (!(abc.dot(ad) < 0)) positive = false;
-    std::array<double, 4> scales;
-    for (std::size_t i = 0; i < 4; ++i) scales[i] = 1.0 / normals[i].norm();
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j) {
-        const double cosine = -normals[i].dot(normals[j]) * scales[i] * scales[j];
-        low = std::min(low, cosine);
-        high = std::max(high, cosine);
-      }
-  }
-};
-
-/// The boundary nodes and their stars, and the elements while they are fitted.
-class Fit {
- public:
-  Fit(StuffedMesh& stuffed, const SurfaceMesh& surface, const BoundaryFitParams& params, const Threads& threads)
-      : stuffed_(stuffed),
-        surface_(surface),
-        params_(params),
-        threads_(threads),
-        tree_(surface.positions, surface.triangles),
-        faces_(find_surface_faces(stuffed)),
-        least_cosine_(std::cos(params.max_dihedral * std::numbers::pi / 180)),
-        most_cosine_(std::cos(params.min_dihedral * std::numbers::pi / 180)) {
-    find_stars();
-  }
-
-  void run() {
-    waiting_.resize(nodes_.size());
-    std::iota(waiting_.begin(), waiting_.end(), 0);
-    missed_.resize(surface_.positions.size());
-    std::iota(missed_.begin(), missed_.end(), 0);
-    for (int sweep = 0; sweep < params_.sweeps; ++sweep) {
-      find_targets();
-      pull_by_surface();
-      std::vector<Index> moved;
-      for (std::size_t b = 0; b < nodes_.size(); ++b)
-        if (move(b)) moved.push_back(static_cast<Index>(b));
-      waiting_.swap(moved);
-    }
-  }
-
- private:
-  const Vec3& position(Index node) const { return stuffed_.mesh.nodes[at(node)]; }
-  double spacing() const { return stuffed_.mesh.lattice.spacing; }
-
-  /// Numbers the boundary nodes and lists the elements of each.
-  void find_stars() {
-    numbers_.assign(stuffed_.mesh.nodes.size(), -1);
-    for (const BoundaryFace& face : faces_)
-      for (const Index node : face.nodes) numbers_[at(node)] = 0;
-    for (std::size_t i = 0; i < numbers_.size(); ++i) {
-      if (numbers_[i] < 0) continue;
-      numbers_[i] = static_cast<Index>(nodes_.size());
-      nodes_.push_back(static_cast<Index>(i));
-    }
-    star_ = list_owners(stuffed_.mesh.tets, [](const Tet& tet) { return tet; });
-    fan_ = list_owners(faces_, [](const BoundaryFace& face) { return face.nodes; });
-  }
-
-  /// Elements or faces of each boundary node, as a compressed list.
-  struct Owners {
-    std::vector<Index> offsets, items;
-    std::span<const Index> of(std::size_t b) const {
-      return {items.data() + offsets[b], static_cast<std::size_t>(offsets[b + 1] - offsets[b])};
-    }
-  };
-
-  template <typename Item, typename NodesOf>
-  Owners list_owners(const std::vector<Item>& items, const NodesOf& nodes_of) const {
-    Owners owners;
-    owners.offsets.assign(nodes_.size() + 1, 0);
-    const auto visit = [&](const auto& owned) {
-      for (std::size_t i = 0; i < items.size(); ++i)
-        for (const Index node : nodes_of(items[i]))
-          if (const Index b = numbers_[at(node)]; b >= 0) owned(at(b), static_cast<Index>(i));
-    };
-    visit([&](std::size_t b, Index) { ++owners.offsets[b + 1]; });
-    std::partial_sum(owners.offsets.begin(), owners.offsets.end(), owners.offsets.begin());
-    owners.items.resize(at(owners.offsets.back()));
-    std::vector<Index> next(owners.offsets.begin(), owners.offsets.end() - 1);
-    visit([&](std::size_t b, Index i) { owners.items[at(next[b]++)] = i; });
-    return owners;
-  }
-
-  /// First choice of a boundary node: the nearest point of the surface. Who is there already stays.
-  void find_targets() {
-    targets_.resize(nodes_.size());
-    for (std::size_t b = 0; b < nodes_.size(); ++b) targets_[b] = position(nodes_[b]);
-    threads_.for_chunks(static_cast<std::int64_t>(waiting_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t w = begin; w < end; ++w) {
-        Vec3& target = targets_[at(waiting_[static_cast<std::size_t>(w)])];
-        const TriangleTree::Nearest found = nearest_in_reach(tree_, target);
-        if (found.triangle >= 0) target = found.point;
-      }
-    });
-  }
-
-  TriangleTree::Nearest nearest_in_reach(const TriangleTree& tree, const Vec3& p) const {
-    return tree.nearest(p, std::pow(kReach * spacing(), 2), [](Index, const Vec3&) { return true; });
-  }
-
-  /// A surface vertex that the boundary misses, and the boundary node nearest to it; -1 if it is not missed.
-  struct Pull {
-    Index vertex, node;
-    double squared;
-  };
-
-  /// Pulls of the vertices missed so far; who is met once is not asked again.
-  std::vector<Pull> find_pulls() const {
-    std::vector<Triangle> triangles(faces_.size());
-    std::transform(faces_.begin(), faces_.end(), triangles.begin(), [](const BoundaryFace& f) { return f.nodes; });
-    const TriangleTree boundary(stuffed_.mesh.nodes, triangles);
-    std::vector<Pull> pulls(missed_.size());
-    const double least = std::pow(params_.tolerance * spacing(), 2);
-    threads_.for_chunks(static_cast<std::int64_t>(pulls.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (auto m = static_cast<std::size_t>(begin); m < static_cast<std::size_t>(end); ++m) {
-        const Vec3& p = surface_.positions[at(missed_[m])];
-        const TriangleTree::Nearest found = nearest_in_reach(boundary, p);
-        pulls[m] = {missed_[m], -1, found.squared_distance};
-        if (found.triangle < 0 || found.squared_distance < least) continue;
-        const auto nearer = [&](Index a, Index b) {
-          return (stuffed_.mesh.nodes[at(a)] - p).squaredNorm() < (stuffed_.mesh.nodes[at(b)] - p).squaredNorm();
-        };
-        const Triangle& face = triangles[at(found.triangle)];
-        pulls[m].node = *std::min_element(face.begin(), face.end(), nearer);
-      }
-    });
-    std::erase_if(pulls, [](const Pull& pull) { return pull.node < 0; });
-    return pulls;
-  }
-
-  /// Second choice: of the surface vertices that the boundary misses, the farthest pulls the node nearest to it.
-  void pull_by_surface() {
-    const std::vector<Pull> pulls = find_pulls();
-    missed_.clear();
-    pulled_.assign(nodes_.size(), false);
-    std::vector<double> farthest(nodes_.size(), 0.0);
-    for (const Pull& pull : pulls) {
-      missed_.push_back(pull.vertex);
-      const std::size_t b = at(numbers_[at(pull.node)]);
-      if (pull.squared <= farthest[b]) continue;
-      farthest[b] = pull.squared;
-      targets_[b] = surface_.positions[at(pull.vertex)];
-      pulled_[b] = true;
-    }
-  }
-
-  /// How far the faces at a node and the surface vertex that pulls it are apart, at most, with samples in the faces.
-  double pulled_error(std::size_t b) const {
-    double error = 0, missed = 1e300;
-    for (const Index f : fan_.of(b)) {
-      std::array<Vec3, 3> x;
-      for (std::size_t k = 0; k < 3; ++k) x[k] = position(faces_[at(f)].nodes[k]);
-      missed = std::min(missed, (nearest_on_triangle(targets_[b], x[0], x[1], x[2]) - targets_[b]).squaredNorm());
-      for (const Vec3& sample :
-           {Vec3((x[0] + x[1] + x[2]) / 3), Vec3((x[0] + x[1]) / 2), Vec3((x[1] + x[2]) / 2), Vec3((x[2] + x[0]) / 2)})
-        error = std::max(error, nearest_in_reach(tree_, sample).squared_distance);
-    }
-    return std::sqrt(std::max(error, missed));
-  }
-
-  CosineRange star_range(std::size_t b) const {
-    CosineRange range;
-    for (const Index e : star_.of(b)) {
-      std::array<Vec3, 4> x;
-      const Tet& tet = stuffed_.mesh.tets[at(e)];
-      for (std::size_t k = 0; k < 4; ++k) x[k] = stuffed_.mesh.nodes[at(tet[k])];
-      range.add(x);
-    }
-    return range;
-  }
-
-  /// As far towards the target as the star allows: all the way, half, a quarter ... True if there was a way to go.
-  bool move(std::size_t b) {
-    Vec3& x = stuffed_.mesh.nodes[at(nodes_[b])];
-    const Vec3 from = x, step = targets_[b] - from;
-    if (step.squaredNorm() < std::pow(kArrived * spacing(), 2)) return false;
-    const CosineRange before = star_range(b);
-    const double error = pulled_[b] ? pulled_error(b) : 0;
-    for (double share = 1; share > 0.1; share *= 0.5) {
-      x = from + share * step;
-      const CosineRange after = star_range(b);
-      if (after.positive && after.low >= std::min(least_cosine_, before.low) &&
-          after.high <= std::max(most_cosine_, before.high) && (!pulled_[b] || pulled_error(b) < kWorthwhile * error))
-        return true;
-    }
-    x = from;
-    return true;
-  }
-
-  StuffedMesh& stuffed_;
-  const SurfaceMesh& surface_;
-  const BoundaryFitParams& params_;
-  const Threads& threads_;
-  TriangleTree tree_;
-  std::vector<BoundaryFace> faces_;
-  double least_cosine_, most_cosine_;
-  std::vector<Index> nodes_, numbers_;  ///< boundary nodes; per node its place there, -1 inside
-  Owners star_, fan_;                   ///< elements and boundary faces of each boundary node
-  std::vector<Vec3> targets_;
-  std::vector<bool> pulled_;    ///< targets that are of the second choice
-  std::vector<Index> waiting_;  ///< boundary nodes that may not be on the surface yet
-  std::vector<Index> missed_;   ///< surface vertices that may not be on the boundary yet
-};
+double cubed(double x) {
+  return x * x * x;
+}
 
 }  // namespace
 
+/// The boundary nodes and their stars, and the elements while they are fitted.
+class BoundaryFit::Fit {
+ public:
+  Fit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples, const BoundaryFitParams& params,
+      const Threads& threads, FitMemory* memory)
+      : mesh_(stuffed.mesh),
+        tree_(tree),
+        samples_(samples),
+        params_(params),
+        threads_(threads),
+        memory_(memory),
+        stars_(stuffed),
+        near_(std::pow(kNear * params.tolerance * stuffed.mesh.lattice.spacing, 2)),
+        wanted_(std::pow(params.tolerance * stuffed.mesh.lattice.spacing, 2)) {}
+
+  void run() {
+    sample_faces_.assign(samples_.size(), -1);
+    probes_.resize(stars_.nodes.size() + stars_.edges.size() + stars_.faces.size());
+    std::vector<Vec3> before;
+    for (const Index node : stars_.nodes) before.push_back(position(node));
+    draw_to_surface();
+    moved_.assign(stars_.nodes.size(), true);
+    for (int sweep = 0; sweep < params_.sweeps; ++sweep) {
+      pair_samples();
+      find_probes();
+      moved_.assign(stars_.nodes.size(), false);
+      bool any = false;
+      for (std::size_t b = 0; b < stars_.nodes.size(); ++b) {
+        if (!is_wanted(b) || !relax(b)) continue;
+        moved_[b] = any = true;
+      }
+      if (!any) break;
+    }
+    pair_samples();
+    find_probes();
+    if (memory_ == nullptr) return;
+    *memory_ = {};
+    for (std::size_t b = 0; b < before.size(); ++b) memory_->add(before[b], position_of(b));
+  }
+
+  std::vector<BoundaryGap> gaps(double limit) const {
+    std::vector<BoundaryGap> gaps;
+    const double squared = limit * limit;
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+      if (sample_distances_[s] <= squared) continue;
+      const Triangle& face = stars_.faces[at(sample_faces_[s])].nodes;
+      gaps.push_back({samples_[s],
+                      nearest_on_triangle(samples_[s], position(face[0]), position(face[1]), position(face[2])), face});
+    }
+    const auto add_probe = [&](std::size_t p, const Triangle& face) {
+      if (probes_[p].place < 0 || probes_[p].squared <= squared) return;
+      const auto& [a, b, c] = tree_.corners()[at(probes_[p].place)];
+      const Vec3 x = probe_point(p);
+      gaps.push_back({nearest_on_triangle(x, a, b, c), x, face, true});
+    };
+    for (std::size_t f = 0; f < stars_.faces.size(); ++f)
+      add_probe(stars_.nodes.size() + stars_.edges.size() + f, stars_.faces[f].nodes);
+    for (std::size_t e = 0; e < stars_.edges.size(); ++e)
+      add_probe(stars_.nodes.size() + e, {stars_.edges[e][0], stars_.edges[e][1], stars_.edges[e][1]});
+    for (std::size_t b = 0; b < stars_.nodes.size(); ++b)
+      add_probe(b, {stars_.nodes[b], stars_.nodes[b], stars_.nodes[b]});
+    return gaps;
+  }
+
+ private:
+  /// The nearest triangle of the surface to a point of the boundary.
+  struct Probe {
+    Index place = -1;  ///< in the tree; -1: none within reach
+    double squared = 0;
+  };
+
+  const Vec3& position(Index node) const { return mesh_.nodes[at(node)]; }
+  Vec3& position_of(std::size_t b) { return mesh_.nodes[at(stars_.nodes[b])]; }
+
+  double longest_edge(std::size_t b) const {
+    double squared = 0;
+    for (const Index e : stars_.edges_of.of(b))
+      squared = std::max(squared, (position(stars_.edges[at(e)][0]) - position(stars_.edges[at(e)][1])).squaredNorm());
+    return std::sqrt(squared);
+  }
+
+  /// Moves every node to the nearest point of the surface, as far as its star allows.
+  void draw_to_surface() {
+    std::vector<Vec3> targets(stars_.nodes.size());
+    threads_.for_chunks(static_cast<std::int64_t>(targets.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      Index guess = -1;
+      for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+        targets[b] = position(stars_.nodes[b]);
+        const TriangleTree::Nearest found = tree_.nearest_from(targets[b], guess);
+        probes_[b] = {found.place, found.squared_distance};
+        guess = found.place;
+        const Vec3* known = memory_ == nullptr ? nullptr : memory_->find(targets[b]);
+        if (known != nullptr)
+          targets[b] = *known;
+        else if (found.squared_distance < std::pow(kReach * longest_edge(b), 2))
+          targets[b] = found.point;
+      }
+    });
+    // Twice: at first neighbours may not be where they leave room.
+    for (int pass = 0; pass < 2; ++pass)
+      for (std::size_t b = 0; b < targets.size(); ++b) {
+        const Vec3 step = targets[b] - position_of(b);
+        if (step.squaredNorm() > 1e-8 * wanted_) try_step(b, step, [] { return true; });
+      }
+    // What is near a node is a good guess for the edges and faces at it.
+    for (std::size_t p = stars_.nodes.size(); p < probes_.size(); ++p) {
+      const std::size_t e = p - stars_.nodes.size();
+      const Index node = e < stars_.edges.size() ? stars_.edges[e][0] : stars_.faces[e - stars_.edges.size()].nodes[0];
+      probes_[p].place = probes_[at(stars_.numbers[at(node)])].place;
+    }
+  }
+
+  /// Finds the face nearest to each sample, again where something moved.
+  void pair_samples() {
+    std::vector<Triangle> triangles(stars_.faces.size());
+    std::transform(stars_.faces.begin(), stars_.faces.end(), triangles.begin(),
+                   [](const BoundaryFace& face) { return face.nodes; });
+    const TriangleTree boundary(mesh_.nodes, triangles);
+    std::vector<Index> places(triangles.size());
+    for (std::size_t p = 0; p < places.size(); ++p) places[at(boundary.order()[p])] = static_cast<Index>(p);
+    sample_distances_.resize(samples_.size());
+    threads_.for_chunks(static_cast<std::int64_t>(samples_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      Index guess = -1;
+      for (auto s = static_cast<std::size_t>(begin); s < static_cast<std::size_t>(end); ++s) {
+        if (const Index face = sample_faces_[s]; face >= 0) {
+          if (!has_moved(face) && sample_distances_[s] < near_) continue;
+          sample_distances_[s] = squared_distance(samples_[s], face);
+          if (sample_distances_[s] < near_) continue;
+          guess = places[at(face)];
+        }
+        const TriangleTree::Nearest found = boundary.nearest_from(samples_[s], guess, near_);
+        guess = found.place;
+        sample_faces_[s] = found.triangle;
+        sample_distances_[s] = found.squared_distance;
+      }
+    });
+    list_samples();
+  }
+
+  bool has_moved(Index face) const {
+    return std::any_of(stars_.faces[at(face)].nodes.begin(), stars_.faces[at(face)].nodes.end(),
+                       [&](Index node) { return moved_[at(stars_.numbers[at(node)])]; });
+  }
+
+  /// Samples of each face; without those that are out of reach, and some of many.
+  void list_samples() {
+    std::vector<double> reach(stars_.faces.size());
+    for (std::size_t f = 0; f < reach.size(); ++f) {
+      const auto& [a, b, c] = stars_.faces[f].nodes;
+      reach[f] = kReach * kReach *
+                 std::max({(position(a) - position(b)).squaredNorm(), (position(b) - position(c)).squaredNorm(),
+                           (position(c) - position(a)).squaredNorm()});
+    }
+    std::vector<Index> counts(stars_.faces.size(), 0), farthest(stars_.faces.size(), -1);
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+      const std::size_t f = at(sample_faces_[s]);
+      if (sample_distances_[s] > reach[f]) continue;
+      ++counts[f];
+      if (farthest[f] < 0 || sample_distances_[s] > sample_distances_[at(farthest[f])])
+        farthest[f] = static_cast<Index>(s);
+    }
+    face_samples_ = CompressedList(stars_.faces.size(), [&](const auto& with) {
+      std::vector<Index> seen(stars_.faces.size(), 0);
+      for (std::size_t s = 0; s < samples_.size(); ++s) {
+        const std::size_t f = at(sample_faces_[s]);
+        if (sample_distances_[s] > reach[f]) continue;
+        const bool is_turn = seen[f]++ % (counts[f] / kFaceSamples + 1) == 0;
+        if (is_turn || farthest[f] == static_cast<Index>(s)) with(f, static_cast<Index>(s));
+      }
+    });
+  }
+
+  double squared_distance(const Vec3& p, Index face) const {
+    const auto& [a, b, c] = stars_.faces[at(face)].nodes;
+    return (nearest_on_triangle(p, position(a), position(b), position(c)) - p).squaredNorm();
+  }
+
+  /// Probes are the boundary nodes, the middles of edges, and the middles of faces.
+  Vec3 probe_point(std::size_t p) const {
+    if (p < stars_.nodes.size()) return position(stars_.nodes[p]);
+    p -= stars_.nodes.size();
+    if (p < stars_.edges.size()) return 0.5 * (position(stars_.edges[p][0]) + position(stars_.edges[p][1]));
+    const auto& [a, b, c] = stars_.faces[p - stars_.edges.size()].nodes;
+    return (position(a) + position(b) + position(c)) / 3;
+  }
+  bool probe_moved(std::size_t p) const {
+    if (p < stars_.nodes.size()) return moved_[p];
+    p -= stars_.nodes.size();
+    if (p >= stars_.edges.size()) return has_moved(static_cast<Index>(p - stars_.edges.size()));
+    return moved_[at(stars_.numbers[at(stars_.edges[p][0])])] || moved_[at(stars_.numbers[at(stars_.edges[p][1])])];
+  }
+
+  void find_probes() {
+    threads_.for_chunks(static_cast<std::int64_t>(probes_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p)
+        if (probe_moved(p)) probes_[p] = probe(p);
+    });
+  }
+
+  /// Beginning with the triangle that was the nearest before; that is good enough if it is near.
+  Probe probe(std::size_t p) const {
+    const Vec3 x = probe_point(p);
+    if (probes_[p].place >= 0) {
+      const auto& [a, b, c] = tree_.corners()[at(probes_[p].place)];
+      const double squared = (nearest_on_triangle(x, a, b, c) - x).squaredNorm();
+      if (squared < near_) return {probes_[p].place, squared};
+    }
+    const TriangleTree::Nearest found = tree_.nearest_from(x, probes_[p].place);
+    return {found.place, found.squared_distance};
+  }
+
+  /// Calls visit(probe, share of the node in it) for the probes that move with a node.
+  template <typename Visit>
+  void visit_probes(std::size_t b, const Visit& visit) const {
+    visit(b, 1.0);
+    for (const Index e : stars_.edges_of.of(b)) visit(stars_.nodes.size() + at(e), 0.5);
+    for (const Index f : stars_.faces_of.of(b)) visit(stars_.nodes.size() + stars_.edges.size() + at(f), 1.0 / 3);
+  }
+
+  /// Whether something at the node is further away than the tolerance.
+  bool is_wanted(std::size_t b) const {
+    double most = 0;
+    visit_probes(b, [&](std::size_t p, double) { most = std::max(most, probes_[p].squared); });
+    for (const Index f : stars_.faces_of.of(b))
+      for (const Index s : face_samples_.of(at(f))) most = std::max(most, sample_distances_[at(s)]);
+    return most > wanted_;
+  }
+
+  /// Sum of the sixth powers of the distances of all samples and probes of a node: mostly that of the largest. Stops
+  /// where it is more than `limit`.
+  double energy(std::size_t b, double limit) const {
+    double sum = 0;
+    for (const Index f : stars_.faces_of.of(b))
+      for (const Index s : face_samples_.of(at(f))) {
+        double least = squared_distance(samples_[at(s)], f);
+        if (least > near_)
+          for (const Index g : stars_.faces_of.of(b)) least = std::min(least, squared_distance(samples_[at(s)], g));
+        sum += cubed(least);
+        if (sum > limit) return sum;
+      }
+    visit_probes(b, [&](std::size_t p, double) {
+      if (sum <= limit) sum += cubed(probe(p).squared);
+    });
+    return sum;
+  }
+
+  /// A step of Newton's method for the energy, in which each distance changes along its direction only.
+  Vec3 newton_step(std::size_t b) const {
+    Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+    Vec3 force = Vec3::Zero();
+    const auto add = [&](const Vec3& gap, double share) {
+      const double squared = gap.squaredNorm();
+      matrix += (share * share * squared) * gap * gap.transpose();
+      force += (share * squared * squared) * gap;
+    };
+    visit_probes(b, [&](std::size_t p, double share) {
+      if (probes_[p].place < 0) return;
+      const Vec3 x = probe_point(p);
+      const auto& [u, v, w] = tree_.corners()[at(probes_[p].place)];
+      add(nearest_on_triangle(x, u, v, w) - x, share);
+    });
+    const Index own = stars_.nodes[b];
+    for (const Index f : stars_.faces_of.of(b)) {
+      const auto& [i, j, k] = stars_.faces[at(f)].nodes;
+      for (const Index s : face_samples_.of(at(f))) {
+        const Vec3 foot = nearest_on_triangle(samples_[at(s)], position(i), position(j), position(k));
+        const double share = barycentric_share(foot, own, stars_.faces[at(f)].nodes);
+        if (share > 0) add(samples_[at(s)] - foot, share);
+      }
+    }
+    matrix.diagonal().array() += kDamping * matrix.trace() + 1e-300;
+    return matrix.ldlt().solve(force);
+  }
+  static constexpr double kDamping = 0.05;
+
+  /// Barycentric weight of one corner at a point of a face.
+  double barycentric_share(const Vec3& p, Index own, const Triangle& face) const {
+    const std::size_t k = face[0] == own ? 0 : face[1] == own ? 1 : 2;
+    const Vec3 &a = position(face[k]), &b = position(face[(k + 1) % 3]), &c = position(face[(k + 2) % 3]);
+    const Vec3 area = (b - a).cross(c - a);
+    return area.dot((b - p).cross(c - p)) / area.squaredNorm();
+  }
+
+  bool relax(std::size_t b) {
+    Vec3 step = newton_step(b);
+    const double longest = 0.5 * longest_edge(b);
+    if (step.norm() > longest) step *= longest / step.norm();
+    if (!(step.squaredNorm() > 1e-8 * wanted_)) return false;
+    const double limit = 0.98 * energy(b, 1e300);
+    return try_step(b, step, [&] { return energy(b, limit) < limit; });
+  }
+
+  /// All of the step, half, a quarter ... as the star and `accept` allow; whether there was a way.
+  template <typename Accept>
+  bool try_step(std::size_t b, const Vec3& step, const Accept& accept) {
+    Vec3& x = position_of(b);
+    const Vec3 from = x;
+    CosineRange bounds = stars_.cosines(mesh_, b);
+    bounds.low = std::min(bounds.low, std::cos(params_.max_dihedral * std::numbers::pi / 180));
+    bounds.high = std::max(bounds.high, std::cos(params_.min_dihedral * std::numbers::pi / 180));
+    for (double share = 1; share > 0.1; share *= 0.5) {
+      x = from + share * step;
+      if (stars_.cosines(mesh_, b).is_within(bounds) && accept()) return true;
+    }
+    x = from;
+    return false;
+  }
+
+  TetMesh& mesh_;
+  const TriangleTree& tree_;
+  const std::vector<Vec3>& samples_;
+  const BoundaryFitParams& params_;
+  const Threads& threads_;
+  FitMemory* memory_;  ///< may be null
+  BoundaryStars stars_;
+  double near_, wanted_;                  ///< squared, m^2
+  std::vector<Index> sample_faces_;       ///< per sample: the nearest face
+  std::vector<double> sample_distances_;  ///< to it, squared
+  CompressedList face_samples_;
+  std::vector<Probe> probes_;
+  std::vector<bool> moved_;  ///< per boundary node: since the last search
+};
+
+namespace {
+
+std::uint64_t position_key(const Vec3& p) {
+  std::uint64_t key = 0;
+  for (int k = 0; k < 3; ++k) key = (key ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9e3779b97f4a7c15ULL;
+  return key;
+}
+
+}  // namespace
+
+void FitMemory::add(const Vec3& before, const Vec3& after) {
+  if (keys_.insert(position_key(before)).second) steps_.push_back({before, after});
+}
+
+const Vec3* FitMemory::find(const Vec3& before) const {
+  const Index number = keys_.find(position_key(before));
+  return number >= 0 && steps_[at(number)][0] == before ? &steps_[at(number)][1] : nullptr;
+}
+
+std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const std::vector<Index>& order, double step) {
+  std::vector<Vec3> samples;
+  std::vector<bool> taken(surface.positions.size(), false);
+  for (const Index t : order) {
+    const Triangle& triangle = surface.triangles[at(t)];
+    std::array<Vec3, 3> x;
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[k] = surface.positions[at(triangle[k])];
+      if (!taken[at(triangle[k])]) samples.push_back(x[k]);
+      taken[at(triangle[k])] = true;
+      longest = std::max(longest, (x[k] - surface.positions[at(triangle[(k + 1) % 3])]).norm());
+    }
+    const int n = static_cast<int>(std::ceil(longest / step));
+    for (int i = 0; i <= n && n > 1; ++i)
+      for (int j = 0; i + j <= n; ++j)
+        samples.emplace_back(x[0] + (static_cast<double>(i) / n) * (x[1] - x[0]) +
+                             (static_cast<double>(j) / n) * (x[2] - x[0]));
+  }
+  return samples;
+}
+
+BoundaryFit::BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples,
+                         const BoundaryFitParams& params, const Threads& threads, FitMemory* memory)
+    : fit_(std::make_unique<Fit>(stuffed, tree, samples, params, threads, memory)) {
+  fit_->run();
+}
+
+BoundaryFit::~BoundaryFit() = default;
+
+std::vector<BoundaryGap> BoundaryFit::gaps(double limit) const {
+  return fit_->gaps(limit);
+}
+
 void fit_boundary(StuffedMesh& stuffed, const SurfaceMesh& surface, const BoundaryFitParams& params,
                   const Threads& threads) {
-  if (!stuffed.mesh.tets.empty()) Fit(stuffed, surface, params, threads).run();
+  if (stuffed.mesh.tets.empty()) return;
+  const TriangleTree tree(surface.positions, surface.triangles);
+  const std::vector<Vec3> samples = sample_surface(surface, tree.order(), 0.5 * stuffed.mesh.lattice.spacing);
+  const BoundaryFit fit(stuffed, tree, samples, params, threads);
 }
 
 }  // namespace softreel

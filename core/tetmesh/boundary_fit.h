@@ -1,9 +1,15 @@
 /// Draws the boundary of stuffed tetrahedra onto the surface, as far as the dihedral angles allow.
 #pragma once
 
+#include <array>
+#include <memory>
+#include <vector>
+
 #include "core/base/parallel.h"
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/isosurface_stuffing.h"
+#include "core/tetmesh/key_index.h"
+#include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
 
@@ -12,15 +18,56 @@ struct BoundaryFitParams {
   double min_dihedral = 15.0;   ///< degrees; stars of nodes that are worse already only improve
   double max_dihedral = 155.0;  ///< degrees; likewise
   int sweeps = 4;               ///< each moves every boundary node at most once
-  double tolerance = 0.15;      ///< spacings: surface vertices that the boundary misses by less pull no node
+  double tolerance = 0.15;      ///< spacings: what is nearer than this moves no node
 };
 
-/// Moves boundary nodes to the nearest point of the surface, or to a tip, ridge or groove of it that the boundary
-/// misses, if that brings all faces round the node nearer to the surface. Elements, their order and who is neighbour of
-/// whom stay; inner nodes do not move.
+/// Points of a surface: its used vertices, and a grid with steps of at most `step` over triangles with longer edges. In
+/// the order of the triangles in `order`, which should be that of a tree: neighbours are to be near in memory.
+std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const std::vector<Index>& order, double step);
+
+/// Where the boundary and the surface are apart.
+struct BoundaryGap {
+  Vec3 on_surface, on_boundary;
+  Triangle face;               ///< of the boundary, at the gap; of nodes and edges too, with equal ones
+  bool from_boundary = false;  ///< the point of the boundary was given, that of the surface is nearest to it
+};
+
+/// Where nodes were before and after an earlier fit, so that a fit of a similar mesh begins there.
+class FitMemory {
+ public:
+  void add(const Vec3& before, const Vec3& after);
+  /// Where the fit took a node that began at exactly `before`; null if there was none.
+  const Vec3* find(const Vec3& before) const;
+
+ private:
+  KeyIndex keys_;
+  std::vector<std::array<Vec3, 2>> steps_;
+};
+
+/// Moves boundary nodes to the nearest point of the surface; then those whose faces miss it by more than the tolerance
+/// to where the largest distances round them, from the samples to the faces and from the faces to the surface, are
+/// least. Elements, their order and who is neighbour of whom stay; inner nodes do not move.
 ///
 /// No element gets a dihedral angle beyond the two of `params` unless its neighbours had a worse one before. Cost: some
-/// microseconds a boundary node and surface vertex. The bits do not depend on the number of threads.
+/// microseconds a boundary node and sample. The bits do not depend on the number of threads.
+class BoundaryFit {
+ public:
+  /// Fits. tree: of the surface; samples: points of it; memory: read, then replaced. All are borrowed while this lives.
+  BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples,
+              const BoundaryFitParams& params, const Threads& threads, FitMemory* memory = nullptr);
+  ~BoundaryFit();
+  BoundaryFit(const BoundaryFit&) = delete;
+  BoundaryFit& operator=(const BoundaryFit&) = delete;
+
+  /// Samples, nodes, and middles of edges and faces that are further than `limit` (m) from the other side.
+  std::vector<BoundaryGap> gaps(double limit) const;
+
+ private:
+  class Fit;
+  std::unique_ptr<Fit> fit_;
+};
+
+/// The same with samples half a spacing apart.
 void fit_boundary(StuffedMesh& stuffed, const SurfaceMesh& surface, const BoundaryFitParams& params,
                   const Threads& threads);
 

@@ -2,19 +2,57 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "core/mesh/mesh_topology.h"
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
+#include "core/tetmesh/farthest_point.h"
 #include "core/tetmesh/graded_octree.h"
 #include "core/tetmesh/graded_stuffing.h"
+#include "core/tetmesh/hidden_surface.h"
 
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 256;
+/// Base edge in units of the error: few places of most surfaces are so flat that longer ones would do.
+constexpr double kBaseEdge = 12.0;
+
+/// A mesh of base edges alone has so many tetrahedra per square of them, and takes this share of the wanted number.
+constexpr double kTetsPerSquare = 12.0, kBaseShare = 0.11;
 
 /// Samples nearer than this share of the budget are let be; what lies between them may be further away.
 constexpr double kEnough = 0.85;
+
+/// No point may be further away than this share of the budget: what measures it is so much too small at most.
+constexpr double kCertain = 0.98;
+
+/// In the first rounds, which are far from the goal, what a longer fit would mend is let be: fewer sweeps, and gaps of
+/// more than so many budgets.
+constexpr int kFirstRounds = 2, kFirstSweeps = 2, kSweeps = 4;
+constexpr double kFirstLimit = 1.5;
+
+/// So often the error is lowered for one refinement.
+constexpr int kErrorSteps = 8;
+
+/// So many fillings a count may take, and so many of them once it is met, of which the one with the least distance is
+/// kept.
+constexpr int kCountRounds = 20, kMendingRounds = 4;
+
+/// Of eight new cells one takes the place of the leaf that was split.
+constexpr double kNewLeaves = 0.875;
+
+/// Of the tetrahedra that are missing, so many are asked for at once.
+constexpr double kStepShare = 0.6;
+
+/// The error falls with the number of tetrahedra to about this power; met on smooth and sharp bodies alike.
+constexpr double kErrorOverCount = 0.75;
+
+/// How near to the wanted number is near enough.
+constexpr double kCountTolerance = 0.05;
+
+/// Nearer to a rim than this, in budgets, is on it.
+constexpr double kOnRim = 1e-6;
 
 /// Samples are this many budgets apart.
 constexpr double kSampleStep = 2.0;
@@ -23,15 +61,19 @@ std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Calls visit(point) on a grid over a triangle, with steps of at most `step`; not at all if its edges are shorter.
-template <typename Visit>
-void visit_samples(const std::array<Vec3, 3>& x, double step, const Visit& visit) {
-  const Vec3 u = x[1] - x[0], v = x[2] - x[0];
-  const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
-  const int n = static_cast<int>(std::ceil(longest / step));
-  for (int i = 0; i <= n && n > 1; ++i)
-    for (int j = 0; i + j <= n; ++j)
-      visit(Vec3(x[0] + (static_cast<double>(i) / n) * u + (static_cast<double>(j) / n) * v));
+double area_of(const SurfaceMesh& surface) {
+  double area = 0;
+  for (const auto& [a, b, c] : surface.triangles)
+    area += 0.5 * (surface.positions[at(b)] - surface.positions[at(a)])
+                      .cross(surface.positions[at(c)] - surface.positions[at(a)])
+                      .norm();
+  return area;
+}
+
+double base_edge_of(const SurfaceMesh& surface, const ErrorBudgetParams& params) {
+  if (params.base_edge > 0) return params.base_edge;
+  if (params.error > 0) return kBaseEdge * params.error;
+  return std::sqrt(kTetsPerSquare * area_of(surface) / (kBaseShare * params.tets));
 }
 
 class Filling {
@@ -40,20 +82,32 @@ class Filling {
       : surface_(surface),
         params_(params),
         threads_(threads),
-        base_edge_(params.base_edge * params.error),
+        base_edge_(base_edge_of(surface, params)),
+        error_(params.error > 0 ? params.error : base_edge_ / kBaseEdge),
         frame_{used_bounds(surface).center(), std::ldexp(base_edge_, -params.finer)},
         octree_(frame_, used_bounds(surface), params.finer + params.coarser),
-        sampler_(surface.positions, surface.triangles, frame_) {
+        sampler_(surface.positions, surface.triangles, frame_),
+        visible_(find_visible(surface, sampler_, error_, threads)),
+        samples_(sample_surface(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)),
+        rims_(find_rims(surface)) {
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
       octree_.refine(corners(surface.positions, surface.triangles[t]), params.finer);
   }
 
   GradedFilling run() {
+    if (params_.tets > 0) return run_to_count();
     GradedFilling filling;
-    for (int round = 0; round < params_.finer + 3; ++round) {
+    const int rounds = params_.error > 0 ? params_.finer + 8 : 1;
+    for (int round = 0; round < rounds; ++round) {
       filling = fill();
-      const std::vector<Vec3> missed = find_missed(filling.stuffed);
-      if (missed.empty() || round + 1 == params_.finer + 3 || !refine(missed)) break;
+      std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
+      const bool is_certain = gaps.empty();
+      if (is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
+      filling.is_kept = gaps.empty();
+      if (round + 1 == rounds || refine(filling.stuffed, gaps, 1e300)) continue;
+      // Samples that no size reaches hide what lies between others.
+      if (!is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
+      if (is_certain || !refine(filling.stuffed, gaps, 1e300)) break;
     }
     return filling;
   }
@@ -63,84 +117,214 @@ class Filling {
     return {points[at(triangle[0])], points[at(triangle[1])], points[at(triangle[2])]};
   }
 
-  GradedFilling fill() const {
+  /// The triangles in the order of the tree; those that are not in it as they come.
+  static std::vector<Index> order_of(const SurfaceMesh& visible, const TriangleTree& tree) {
+    if (visible.triangles.size() == tree.order().size()) return tree.order();
+    std::vector<Index> order(visible.triangles.size());
+    std::iota(order.begin(), order.end(), 0);
+    return order;
+  }
+
+  /// What the boundary has to follow; the surface as it is, unless it overlaps itself.
+  static SurfaceMesh find_visible(const SurfaceMesh& surface, const DistanceSampler& sampler, double error,
+                                  const Threads& threads) {
+    if (sampler.overlaps())
+      return without_hidden(surface, std::vector<std::uint8_t>(surface.triangles.size(), 1), error, threads);
+    SurfaceMesh visible;
+    visible.positions = surface.positions;
+    visible.triangles = surface.triangles;
+    return visible;
+  }
+
+  /// Keeps to an error, then to smaller and smaller ones, until the count is reached: the last refinement takes the
+  /// worst places, as many as the count allows. Where that was too far, again from the round before with less.
+  GradedFilling run_to_count() {
+    GradedFilling best;
+    double best_gap = 1e300, best_miss = 1e300, before = 0, granted = 0, tets_per_leaf = kTetsPerSquare / 2;
+    GradedOctree last = octree_;
+    std::vector<BoundaryGap> gaps;
+    int mended = 0;
+    for (int round = 0, grown = 0; round < kCountRounds && mended < kMendingRounds; ++round) {
+      GradedFilling filling = fill();
+      const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
+      if (granted > 0 && count > before) tets_per_leaf *= std::clamp((count - before) / granted, 0.25, 4.0);
+      const double miss = std::abs(count / params_.tets - 1);
+      const bool too_many = count > (1 + kCountTolerance) * params_.tets;
+      if (too_many && best_miss < kCountTolerance) ++mended;
+      if (!too_many || before == 0) gaps = fit(filling.stuffed, grown++);
+      double gap = 1e300;
+      if (miss < kCountTolerance) {
+        gaps = find_gaps(filling.stuffed, kCertain * error_);
+        gap = widest(gaps);
+        ++mended;
+      }
+      if (best_miss < kCountTolerance ? gap < best_gap : miss < best_miss) {
+        best_gap = gap;
+        best_miss = miss;
+        best = filling;
+      }
+      if (too_many && before == 0) break;
+      if (too_many) {
+        octree_ = last;
+      } else {
+        last = octree_;
+        last_filling_ = std::move(filling);
+        before = count;
+      }
+      // In ever smaller steps: what a refinement spoils is mended by the next one.
+      const double missing = (1 + 0.8 * kCountTolerance) * params_.tets - before;
+      const double share = missing > 0.12 * params_.tets ? kStepShare : 1.0;
+      const auto cells = static_cast<double>(octree_.cells().size());
+      if (missing <= 0 || !refine_further(gaps, share * missing / tets_per_leaf)) break;
+      granted = tets_per_leaf * kNewLeaves * (static_cast<double>(octree_.cells().size()) - cells);
+    }
+    if (best_miss >= kCountTolerance && !best.stuffed.mesh.tets.empty()) fit(best.stuffed, kFirstRounds);
+    return best;
+  }
+
+  static double widest(const std::vector<BoundaryGap>& gaps) {
+    double width = 0;
+    for (const BoundaryGap& gap : gaps) width = std::max(width, (gap.on_surface - gap.on_boundary).norm());
+    return width;
+  }
+
+  GradedFilling fill() {
     GradedFilling filling;
     const LatticeNodeSet nodes = octree_.nodes();
-    filling.distance = sampler_.sample(nodes, std::ldexp(base_edge_, params_.coarser), threads_);
+    filling.distance = sampler_.sample(nodes, octree_.widths(nodes), known_, threads_);
+    known_ = filling.distance;
     filling.stuffed = stuff_octree(octree_, nodes, filling.distance.lattice.values);
     mend_boundary(filling.stuffed);
     filling.stuffed.mesh.lattice = {frame_.origin, base_edge_};
     filling.finest_edge = frame_.spacing;
-    BoundaryFitParams fit;
-    fit.tolerance = params_.fit_tolerance * params_.error / base_edge_;
-    fit_boundary(filling.stuffed, surface_, fit, threads_);
     return filling;
   }
 
-  /// Vertices of triangles, and samples of large ones, that are further than the budget from those of a tree; in order.
-  std::vector<Vec3> far_samples(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                                const TriangleTree& tree) const {
-    std::vector<Vec3> samples;
-    std::vector<bool> taken(points.size(), false);
-    for (const Triangle& triangle : triangles) {
-      for (const Index v : triangle)
-        if (!taken[at(v)]) samples.push_back(points[at(v)]);
-      for (const Index v : triangle) taken[at(v)] = true;
-      visit_samples(corners(points, triangle), kSampleStep * params_.error,
-                    [&](const Vec3& p) { samples.push_back(p); });
+  /// Fits, and returns what is still too far apart.
+  std::vector<BoundaryGap> fit(StuffedMesh& stuffed, int round) {
+    BoundaryFitParams fit_params;
+    fit_params.tolerance = params_.fit_tolerance * error_ / base_edge_;
+    fit_params.sweeps = round < kFirstRounds ? kFirstSweeps : kSweeps;
+    if (stuffed.mesh.tets.empty()) return everywhere();
+    const BoundaryFit fitted(stuffed, sampler_.tree(), samples_, fit_params, threads_, &memory_);
+    return fitted.gaps((round < kFirstRounds ? kFirstLimit : kEnough) * error_);
+  }
+
+  /// The whole surface, for a lattice that has no node inside.
+  std::vector<BoundaryGap> everywhere() const {
+    std::vector<BoundaryGap> gaps;
+    for (const Vec3& p : samples_) gaps.push_back({p, p, {-1, -1, -1}});
+    return gaps;
+  }
+
+  /// All gaps, also between samples and inside faces.
+  std::vector<BoundaryGap> find_gaps(const StuffedMesh& stuffed, double limit) const {
+    std::vector<Triangle> faces;
+    for (const BoundaryFace& face : find_surface_faces(stuffed)) faces.push_back(face.nodes);
+    const TriangleTree boundary(stuffed.mesh.nodes, faces);
+    std::vector<BoundaryGap> gaps;
+    for (const Vec3& p : find_far_points(visible_.positions, visible_.triangles, boundary, limit, threads_)) {
+      const TriangleTree::Nearest found = boundary.nearest(p);
+      gaps.push_back({p, found.point, faces[at(found.triangle)]});
     }
-    const double limit = std::pow(kEnough * params_.error, 2);
-    std::vector<std::uint8_t> is_far(samples.size());
-    threads_.for_chunks(static_cast<std::int64_t>(samples.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-        is_far[i] = tree.nearest(samples[i], limit, [](Index, const Vec3&) { return true; }).triangle < 0 ? 1 : 0;
-    });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      if (is_far[i] != 0) samples[kept++] = samples[i];
-    samples.resize(kept);
-    return samples;
+    for (const Vec3& p : find_far_points(stuffed.mesh.nodes, faces, sampler_.tree(), limit, threads_))
+      gaps.push_back({sampler_.tree().nearest(p).point, p, faces[at(boundary.nearest(p).triangle)], true});
+    return gaps;
   }
 
-  /// Where the boundary and the surface are too far apart: points of both, and of the surface near those of the
-  /// boundary.
-  std::vector<Vec3> find_missed(const StuffedMesh& stuffed) const {
-    std::vector<Triangle> boundary;
-    for (const BoundaryFace& face : find_surface_faces(stuffed)) boundary.push_back(face.nodes);
-    std::vector<Vec3> missed = far_samples(stuffed.mesh.nodes, boundary, sampler_.tree());
-    const std::size_t of_boundary = missed.size();
-    for (std::size_t i = 0; i < of_boundary; ++i) missed.push_back(sampler_.tree().nearest(missed[i]).point);
-    if (boundary.empty()) return surface_.positions;
-    const TriangleTree tree(stuffed.mesh.nodes, boundary);
-    for (const Vec3& p : far_samples(surface_.positions, surface_.triangles, tree)) missed.push_back(p);
-    return missed;
+  /// Refines the last filling at gaps, or, where there are none that can be refined, for smaller and smaller errors.
+  bool refine_further(std::vector<BoundaryGap>& gaps, double more_leaves) {
+    if (refine(last_filling_.stuffed, gaps, more_leaves)) return true;
+    const auto count = static_cast<double>(last_filling_.stuffed.mesh.tets.size());
+    for (int step = 0; step < kErrorSteps; ++step) {
+      gaps = find_gaps(last_filling_.stuffed, kCertain * error_);
+      if (refine(last_filling_.stuffed, gaps, more_leaves)) return true;
+      error_ *= std::clamp(std::pow(count / params_.tets, kErrorOverCount), 0.6, 0.95);
+    }
+    return false;
   }
 
-  /// Halves the leaves at the points; false if all are as small as they may be.
-  bool refine(const std::vector<Vec3>& missed) {
-    std::vector<std::int32_t> levels;
-    for (const Vec3& p : missed) levels.push_back(octree_.level_at(p));
+  /// Sides of triangles that an open surface ends at, three bits a triangle; empty if it is closed.
+  static std::vector<std::uint8_t> find_rims(const SurfaceMesh& surface) {
+    std::vector<std::uint8_t> rims(surface.triangles.size(), 0);
+    const std::vector<Triangle> welded = welded_triangles(surface);
+    const std::vector<HalfEdge> sides = sorted_half_edges(welded);
     bool any = false;
-    for (std::size_t i = 0; i < missed.size(); ++i) {
-      if (levels[i] == 0) continue;
+    for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
+      if (edge.size() != 1) return;
       any = true;
-      octree_.refine(missed[i], levels[i] - 1);
+      const Triangle& triangle = welded[at(edge[0].triangle)];
+      for (std::size_t k = 0; k < 3; ++k)
+        if (triangle[k] != edge[0].low && triangle[k] != edge[0].high)
+          rims[at(edge[0].triangle)] |= static_cast<std::uint8_t>(1U << k);
+    });
+    if (!any) rims.clear();
+    return rims;
+  }
+
+  /// Whether a point of the boundary closes a hole: what is nearest to it is the hole's rim. No size mends that.
+  bool is_in_hole(const BoundaryGap& gap) const {
+    if (rims_.empty() || !gap.from_boundary) return false;
+    const TriangleTree::Nearest found = sampler_.tree().nearest(gap.on_boundary);
+    const std::array<Vec3, 3> x = corners(surface_.positions, surface_.triangles[at(found.triangle)]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((rims_[at(found.triangle)] & (1U << k)) == 0) continue;
+      const Vec3 &a = x[(k + 1) % 3], &b = x[(k + 2) % 3];
+      if ((nearest_on_triangle(found.point, a, b, b) - found.point).norm() < kOnRim * error_) return true;
     }
-    return any;
+    return false;
+  }
+
+  /// Halves the largest leaves at each gap, the widest gaps first, until there are so many leaves more. False if there
+  /// is none that may be halved.
+  bool refine(const StuffedMesh& stuffed, std::vector<BoundaryGap>& gaps, double more_leaves) {
+    std::erase_if(gaps, [&](const BoundaryGap& gap) { return is_in_hole(gap); });
+    const auto width = [](const BoundaryGap& gap) { return (gap.on_surface - gap.on_boundary).squaredNorm(); };
+    std::stable_sort(gaps.begin(), gaps.end(),
+                     [&](const BoundaryGap& a, const BoundaryGap& b) { return width(a) > width(b); });
+    struct Wish {
+      Vec3 point;
+      std::int32_t level;
+    };
+    std::vector<Wish> wishes;
+    for (const BoundaryGap& gap : gaps) {
+      std::vector<Vec3> points{gap.on_surface, gap.on_boundary};
+      if (gap.face[0] >= 0) {
+        const std::array<Vec3, 3> face = corners(stuffed.mesh.nodes, gap.face);
+        for (std::size_t k = 0; k < 3; ++k)
+          points.emplace_back(0.8 * face[k] + 0.1 * (face[(k + 1) % 3] + face[(k + 2) % 3]));
+      }
+      std::int32_t most = 0;
+      for (const Vec3& p : points) most = std::max(most, octree_.level_at(p));
+      for (const Vec3& p : points)
+        if (most > 0 && octree_.level_at(p) == most) wishes.push_back({p, most - 1});
+    }
+    const std::size_t before = octree_.cells().size();
+    for (const Wish& wish : wishes) {
+      if (kNewLeaves * static_cast<double>(octree_.cells().size() - before) >= more_leaves) break;
+      octree_.refine(wish.point, wish.level, 0.0);
+    }
+    return octree_.cells().size() > before;
   }
 
   const SurfaceMesh& surface_;
   const ErrorBudgetParams& params_;
   const Threads& threads_;
-  double base_edge_;
+  double base_edge_, error_;
   LatticeFrame frame_;
   GradedOctree octree_;
   DistanceSampler sampler_;
+  SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap
+  std::vector<Vec3> samples_;
+  FitMemory memory_;
+  GradedFilling last_filling_;
+  std::vector<std::uint8_t> rims_;
+  SurfaceDistance known_;  ///< of the filling before
 };
 
 }  // namespace
 
-GradedFilling fill_to_error(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
+GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
   return Filling(surface, params, threads).run();
 }
 

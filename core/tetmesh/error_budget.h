@@ -1,4 +1,4 @@
-/// Graded tetrahedra that keep to an error budget: fine where the surface asks for it, coarse elsewhere.
+/// Graded tetrahedra that keep to an error budget or to a count: fine where the surface asks for it, coarse elsewhere.
 #pragma once
 
 #include "core/base/parallel.h"
@@ -8,13 +8,14 @@
 
 namespace softreel {
 
-/// What graded filling may choose from.
+/// What graded filling may choose from. Exactly one of error and tets is set, or base_edge alone.
 struct ErrorBudgetParams {
   double error = 0;            ///< wanted two-way distance to the surface, m
-  double base_edge = 8;        ///< long edges at the surface where nothing asks for less, in units of `error`
-  int finer = 4;               ///< halvings of the base edge, at most
+  double tets = 0;             ///< wanted number of tetrahedra
+  double base_edge = 0;        ///< long edges at the surface where nothing asks for less, m; 0: chosen
+  int finer = 5;               ///< halvings of the base edge, at most
   int coarser = 2;             ///< doublings of the base edge in the inside, at most
-  double fit_tolerance = 0.5;  ///< boundary nodes are pulled by what the boundary misses by more, in units of `error`
+  double fit_tolerance = 0.7;  ///< boundary nodes are moved for what is further away, in units of the error
 };
 
 /// A graded mesh and what it was made from.
@@ -22,11 +23,13 @@ struct GradedFilling {
   StuffedMesh stuffed;       ///< its lattice is that of the base edge
   SurfaceDistance distance;  ///< stuffed.lattice_nodes are its nodes
   double finest_edge = 0;    ///< m
+  bool is_kept = false;      ///< the error: measured, not only hoped for
 };
 
-/// Fills, measures, and refines where the boundary and the surface are further apart than the budget, until they are
-/// nowhere or the finest edge is reached: at most `finer` + 3 times. The boundary is a manifold. Equal bits at any
-/// number of threads. Cost: the last mesh, about twice.
-GradedFilling fill_to_error(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads);
+/// Fills, fits, measures, and refines where the boundary and the surface are furthest apart: with `error` until they
+/// are nowhere further apart or the finest edge is reached there, with `tets` until there are so many, within 5 %; with
+/// neither there is no refinement. The boundary is a manifold. Equal bits at any number of threads. Cost: about five
+/// times that of the last mesh.
+GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads);
 
 }  // namespace softreel

@@ -24,8 +24,9 @@ class Search {
   Search(const TriangleTree& tree, double lower, double smallest, double tolerance = kFarthestTolerance)
       : tree_(tree), best_(lower), smallest_(smallest), tolerance_(tolerance) {}
 
-  static Probe probe(const TriangleTree& tree, const Vec3& point) {
-    const TriangleTree::Nearest found = tree.nearest(point);
+  /// guess: a place in the tree that may be near; -1: none.
+  static Probe probe(const TriangleTree& tree, const Vec3& point, Index guess) {
+    const TriangleTree::Nearest found = tree.nearest_from(point, guess);
     return {point, found.place, std::sqrt(found.squared_distance)};
   }
 
@@ -47,8 +48,25 @@ class Search {
     visit(ab, bc, ca);
   }
 
+  /// Appends corners that are further away than the lower bound, or points between them if no corner is.
+  void collect(const Probe& a, const Probe& b, const Probe& c, std::vector<Vec3>& far) const {
+    const std::size_t before = far.size();
+    for (const Probe* p : {&a, &b, &c})
+      if (p->distance > best_) far.push_back(p->point);
+    const double longest = std::sqrt(std::max(
+        {(a.point - b.point).squaredNorm(), (b.point - c.point).squaredNorm(), (c.point - a.point).squaredNorm()}));
+    if (far.size() > before || !(longest > smallest_)) return;
+    if (std::max({a.distance, b.distance, c.distance}) + 0.578 * longest <= best_) return;
+    if (upper_bound(a, b, c) <= best_) return;
+    const Probe ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    collect(a, ab, ca, far);
+    collect(ab, b, bc, far);
+    collect(ca, bc, c, far);
+    collect(ab, bc, ca, far);
+  }
+
  private:
-  Probe middle(const Probe& a, const Probe& b) const { return probe(tree_, 0.5 * (a.point + b.point)); }
+  Probe middle(const Probe& a, const Probe& b) const { return probe(tree_, 0.5 * (a.point + b.point), a.leaf_place); }
 
   double upper_bound(const Probe& a, const Probe& b, const Probe& c) const {
     double least = 1e300;
@@ -80,19 +98,30 @@ double mean_edge(const std::vector<Vec3>& points, const std::vector<Triangle>& t
   return std::min(own / static_cast<double>(triangles.size()), other / static_cast<double>(tree.corners().size())) / 3;
 }
 
-}  // namespace
-
-double farthest_distance(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                         const TriangleTree& tree, const Threads& threads) {
-  if (tree.nodes().empty() || triangles.empty()) return 0;
+/// Nearest places of all points that a triangle uses.
+std::vector<Probe> probe_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                const TriangleTree& tree, const Threads& threads) {
   std::vector<bool> used(points.size(), false);
   for (const Triangle& triangle : triangles)
     for (const Index v : triangle) used[static_cast<std::size_t>(v)] = true;
   std::vector<Probe> probes(points.size());
   threads.for_chunks(static_cast<std::int64_t>(points.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)
-      if (used[v]) probes[v] = Search::probe(tree, points[v]);
+    Index guess = -1;
+    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+      if (!used[v]) continue;
+      probes[v] = Search::probe(tree, points[v], guess);
+      guess = probes[v].leaf_place;
+    }
   });
+  return probes;
+}
+
+}  // namespace
+
+double farthest_distance(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                         const TriangleTree& tree, const Threads& threads) {
+  if (tree.nodes().empty() || triangles.empty()) return 0;
+  const std::vector<Probe> probes = probe_points(points, triangles, tree, threads);
   double lower = 0;
   for (const Probe& probe : probes) lower = std::max(lower, probe.distance);
   const double smallest = kSmallest * mean_edge(points, triangles, tree);
@@ -112,8 +141,53 @@ double farthest_distance(const std::vector<Vec3>& points, const std::vector<Tria
 double farthest_of_triangle(const std::array<Vec3, 3>& corners, const TriangleTree& tree, double lower, double smallest,
                             double tolerance) {
   Search search(tree, lower, smallest, tolerance);
-  search.visit(Search::probe(tree, corners[0]), Search::probe(tree, corners[1]), Search::probe(tree, corners[2]));
+  search.visit(Search::probe(tree, corners[0], -1), Search::probe(tree, corners[1], -1),
+               Search::probe(tree, corners[2], -1));
   return search.best();
+}
+
+namespace {
+
+/// Calls with(triangle, its far points) for all triangles, each chunk of them in order.
+template <typename With>
+void visit_far(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles, const TriangleTree& tree,
+               double limit, const Threads& threads, const With& with) {
+  const std::vector<Probe> probes = probe_points(points, triangles, tree, threads);
+  const Search search(tree, limit, kSmallest * mean_edge(points, triangles, tree));
+  threads.for_chunks(static_cast<std::int64_t>(triangles.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Vec3> far;
+    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+      const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
+      far.clear();
+      search.collect(corner(0), corner(1), corner(2), far);
+      with(t, far);
+    }
+  });
+}
+
+}  // namespace
+
+std::vector<Vec3> find_far_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                  const TriangleTree& tree, double limit, const Threads& threads) {
+  if (tree.nodes().empty() || triangles.empty()) return {};
+  const auto n = static_cast<std::int64_t>(triangles.size());
+  std::vector<std::vector<Vec3>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
+  visit_far(points, triangles, tree, limit, threads, [&](std::size_t t, const std::vector<Vec3>& of_triangle) {
+    std::vector<Vec3>& chunk = chunks[t / static_cast<std::size_t>(kGrain)];
+    chunk.insert(chunk.end(), of_triangle.begin(), of_triangle.end());
+  });
+  std::vector<Vec3> far;
+  for (const std::vector<Vec3>& chunk : chunks) far.insert(far.end(), chunk.begin(), chunk.end());
+  return far;
+}
+
+std::vector<std::uint8_t> find_far_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                             const TriangleTree& tree, double limit, const Threads& threads) {
+  std::vector<std::uint8_t> far(triangles.size(), 0);
+  if (tree.nodes().empty() || triangles.empty()) return far;
+  visit_far(points, triangles, tree, limit, threads,
+            [&](std::size_t t, const std::vector<Vec3>& of_triangle) { far[t] = of_triangle.empty() ? 0 : 1; });
+  return far;
 }
 
 }  // namespace softreel

@@ -28,4 +28,13 @@ double farthest_distance(const std::vector<Vec3>& points, const std::vector<Tria
 double farthest_of_triangle(const std::array<Vec3, 3>& corners, const TriangleTree& tree, double lower, double smallest,
                             double tolerance);
 
+/// Points of the triangles that are further than `limit` from the tree, found in the same way: where a triangle has
+/// some, at least one of them. In the order of the triangles.
+std::vector<Vec3> find_far_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                  const TriangleTree& tree, double limit, const Threads& threads);
+
+/// Per triangle 1 if it has such a point, else 0.
+std::vector<std::uint8_t> find_far_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                             const TriangleTree& tree, double limit, const Threads& threads);
+
 }  // namespace softreel

@@ -168,8 +168,16 @@ void GradedOctree::refine(const std::array<Vec3, 3>& triangle, std::int32_t leve
       box, level);
 }
 
-void GradedOctree::refine(const Vec3& point, std::int32_t level) {
-  refine({point, point, point}, level);
+void GradedOctree::refine(const Vec3& point, std::int32_t level, double margin) {
+  const Vec3 p = in_units(point);
+  Bounds box;
+  box.add(p);
+  refine_where(
+      [&](const OctreeCell& cell) {
+        const LatticeNode c = cell.center();
+        return (p - Vec3(c[0], c[1], c[2])).cwiseAbs().maxCoeff() <= (0.5 + margin) * cell.width();
+      },
+      box, level);
 }
 
 std::int32_t GradedOctree::level_at(const Vec3& point) const {
@@ -190,6 +198,21 @@ LatticeNodeSet GradedOctree::nodes() const {
   }
   set.number_nodes();
   return set;
+}
+
+std::vector<double> GradedOctree::widths(const LatticeNodeSet& set) const {
+  std::vector<double> widths(set.nodes().size(), 0.0);
+  for (const OctreeCell& cell : cells_) {
+    if (cell.first_child >= 0) continue;
+    const auto widen = [&](const LatticeNode& node) {
+      double& width = widths[at(set.find(node))];
+      width = std::max(width, 0.5 * frame_.spacing * cell.width());
+    };
+    widen(cell.center());
+    for (std::int32_t side = 0; side < 2; ++side)
+      for (const LatticeNode& corner : face_corners(cell, 0, side)) widen(corner);
+  }
+  return widths;
 }
 
 void GradedOctree::visit_tets(const LatticeNodeSet& set, const VisitTet& visit) const {

@@ -34,8 +34,8 @@ class GradedOctree {
 
   /// Splits the leaves near a triangle until they are of `level` or below; neighbours follow.
   void refine(const std::array<Vec3, 3>& triangle, std::int32_t level);
-  /// Splits the leaf that holds a point, and those within half its width of it, likewise.
-  void refine(const Vec3& point, std::int32_t level);
+  /// Splits the leaf that holds a point, and those within `margin` of their widths of it (at most 0.5), likewise.
+  void refine(const Vec3& point, std::int32_t level, double margin);
 
   /// Level of the leaf that holds a point; the top level outside.
   std::int32_t level_at(const Vec3& point) const;
@@ -46,6 +46,9 @@ class GradedOctree {
 
   /// Corners and centres of all leaves, numbered.
   LatticeNodeSet nodes() const;
+
+  /// Per node of `set`, which is nodes(): the width of the largest leaf it belongs to, m. No edge there is longer.
+  std::vector<double> widths(const LatticeNodeSet& set) const;
 
   /// Calls visit(nodes) for all tetrahedra between leaves: positive orientation, every face shared by two or on the
   /// outside. `set`: nodes(). Their dihedral angles are 45, 60, 90 or 120 degrees.

@@ -76,4 +76,15 @@ int RowCrossings::winding(const LatticeNode& node) const {
   return winding;
 }
 
+bool RowCrossings::overlaps() const {
+  for (std::size_t r = 0; r + 1 < row_begins_.size(); ++r) {
+    int winding = 0;
+    for (Index c = row_begins_[r]; c < row_begins_[r + 1]; ++c) {
+      winding -= crossings_[static_cast<std::size_t>(c)].sign;
+      if (std::abs(winding) > 1) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace softreel

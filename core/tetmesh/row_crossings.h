@@ -19,6 +19,9 @@ class RowCrossings {
   /// other.
   int winding(const LatticeNode& node) const;
 
+  /// Whether some row passes through a place that the surface goes round more than once.
+  bool overlaps() const;
+
   /// Calls visit(node) for all nodes with a winding number other than 0, row by row.
   template <typename Visit>
   void visit_inside(const Visit& visit) const;

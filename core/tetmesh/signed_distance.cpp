@@ -116,7 +116,8 @@ DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::
     winding_.emplace(positions, triangles);
 }
 
-SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, double reach, const Threads& threads) const {
+SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, const std::vector<double>& reaches,
+                                        const SurfaceDistance& known, const Threads& threads) const {
   const std::vector<LatticeNode>& list = nodes.nodes();
   SurfaceDistance result;
   result.lattice.frame = frame_;
@@ -125,8 +126,14 @@ SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, double reac
   result.nearest_triangles.resize(list.size());
   threads.for_chunks(static_cast<std::int64_t>(list.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      if (const Index number = known.lattice.nodes.find(list[i]); number >= 0) {
+        result.lattice.values[i] = known.lattice.values[static_cast<std::size_t>(number)];
+        result.nearest_triangles[i] = known.nearest_triangles[static_cast<std::size_t>(number)];
+        continue;
+      }
       const Vec3 p = lattice_position(frame_, list[i]);
-      const TriangleTree::Nearest found = tree_.nearest(p, reach * reach, [](Index, const Vec3&) { return true; });
+      const TriangleTree::Nearest found =
+          tree_.nearest(p, reaches[i] * reaches[i], [](Index, const Vec3&) { return true; });
       double distance = std::sqrt(found.squared_distance);
       bool inside = false;
       if (crossings_) {

@@ -36,10 +36,14 @@ class DistanceSampler {
   DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                   const LatticeFrame& frame);
 
-  /// Distances of all `nodes` (numbered), m; at most `reach` where the sign is beyond doubt.
-  SurfaceDistance sample(const LatticeNodeSet& nodes, double reach, const Threads& threads) const;
+  /// Distances of all `nodes` (numbered), m; at most `reaches`, one a node. What `known`, an earlier result, has is
+  /// taken from there.
+  SurfaceDistance sample(const LatticeNodeSet& nodes, const std::vector<double>& reaches, const SurfaceDistance& known,
+                         const Threads& threads) const;
 
   const TriangleTree& tree() const { return tree_; }
+  /// Whether the surface is closed and goes more than once round some place on the lattice's rows.
+  bool overlaps() const { return crossings_ && crossings_->overlaps(); }
 
  private:
   LatticeFrame frame_;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/tetmesh/farthest_point.h"
+#include "core/tetmesh/hidden_surface.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
@@ -17,6 +18,9 @@ std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::size_t e) {
   for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.nodes[static_cast<std::size_t>(mesh.tets[e][k])];
   return x;
 }
+
+/// Nothing nearer to the boundary than this share of the box's diagonal is taken for hidden.
+constexpr double kHiddenDepth = 1e-3;
 
 double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
@@ -76,8 +80,17 @@ TetQuality measure_quality(const TetMesh& mesh, const Threads& threads) {
 SurfaceDeviation measure_deviation(const SurfaceMesh& surface, const TetMesh& mesh, const Threads& threads) {
   const std::vector<Triangle> boundary = boundary_faces(mesh);
   const TriangleTree surface_tree(surface.positions, surface.triangles), boundary_tree(mesh.nodes, boundary);
-  return {farthest_distance(surface.positions, surface.triangles, boundary_tree, threads),
-          farthest_distance(mesh.nodes, boundary, surface_tree, threads)};
+  SurfaceDeviation deviation;
+  deviation.from_boundary = farthest_distance(mesh.nodes, boundary, surface_tree, threads);
+  deviation.from_surface = farthest_distance(surface.positions, surface.triangles, boundary_tree, threads);
+  // Distances of hidden pieces are a good share of the body's thickness; a surface that is followed has none such.
+  const double limit = std::max(deviation.from_boundary, kHiddenDepth * used_bounds(surface).diagonal());
+  if (deviation.from_surface <= limit || boundary.empty()) return deviation;
+  const std::vector<std::uint8_t> suspected =
+      find_far_triangles(surface.positions, surface.triangles, boundary_tree, limit, threads);
+  const SurfaceMesh visible = without_hidden(surface, suspected, limit, threads);
+  deviation.from_surface = farthest_distance(visible.positions, visible.triangles, boundary_tree, threads);
+  return deviation;
 }
 
 }  // namespace softreel

@@ -25,7 +25,10 @@ DihedralRange dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const 
 TetQuality measure_quality(const TetMesh& mesh, const Threads& threads);
 
 /// Largest distances between a surface and the boundary of a mesh, m: at all points of the triangles of either, as
-/// far as farthest_distance finds them. Vertices that no triangle uses do not count.
+/// far as farthest_distance finds them. Vertices that no triangle uses do not count. Where pieces of the surface
+/// overlap, what has the solid on both sides is no boundary of it and is left out (hidden_surface.h); only triangles
+/// that are further away than any point of the boundary is from the surface are looked at for that, so that clean
+/// surfaces cost nothing.
 struct SurfaceDeviation {
   double from_surface = 0;   ///< largest distance of a point of the surface to the boundary of the mesh
   double from_boundary = 0;  ///< largest distance of a point of the boundary to the surface

@@ -47,6 +47,7 @@ struct Job {
   const Log& log;
   StageTimes& times;
 
+  bool is_graded() const { return params.graded || params.error > 0; }
   bool is_embedded() const { return params.mode == TetMode::Embedded; }
   double tets_per_square() const { return is_embedded() ? kEmbeddedTetsPerSquare : kTetsPerSquare; }
 };
@@ -175,6 +176,14 @@ Vec3 lattice_shift(int step) {
   return shift;
 }
 
+void warn_of_count(const Job& job, double wanted, std::size_t count) {
+  if (std::abs(static_cast<double>(count) / wanted - 1) <= kCountTolerance) return;
+  job.log.warn(
+      fmt::format("body '{}': {} tetrahedra instead of tets = {}: so few follow the lattice in jumps. Set edge "
+                  "instead for a chosen size.",
+                  job.name, count, wanted));
+}
+
 /// Predicts an edge, fills, and corrects it by the cube root of the count's error until that is within 5 %.
 Filling fill_with_count(const Job& job, double wanted) {
   double edge = edge_for_tets(job, wanted);
@@ -198,25 +207,23 @@ Filling fill_with_count(const Job& job, double wanted) {
     edge *= std::cbrt(std::max(count, 1.0) / wanted);
   }
   best_lines.pass_on(job.log);
-  if (best_error > kCountTolerance && best.tets() > 0)
-    job.log.warn(
-        fmt::format("body '{}': {} tetrahedra instead of tets = {}: so few follow the lattice in jumps. Set edge "
-                    "instead for a chosen size.",
-                    job.name, best.tets(), wanted));
+  if (best.tets() > 0) warn_of_count(job, wanted, best.tets());
   return best;
 }
 
-/// Fills one solid with graded sizes; says where the budget could not be kept.
+/// Fills one solid with graded sizes; says where an error budget could not be kept.
 StuffedMesh grade_solid(const Job& job, const Solid& solid, const ErrorBudgetParams& params) {
   GradedFilling filling = [&] {
     const ScopedStage stage(job.times, "tetrahedralize/lattice");
-    return fill_to_error(solid.surface, params, job.threads);
+    return fill_graded(solid.surface, params, job.threads);
   }();
   StuffedMesh& stuffed = filling.stuffed;
+  const std::size_t filled = stuffed.mesh.tets.size();
   stuffed.mesh.lattice.spacing = filling.finest_edge;  // what is small, and what is too thin, is judged by that
   mend_solid(job, solid, filling.distance, stuffed);
   stuffed.mesh.lattice = {};  // none of one size: the hierarchy finds coarse lattices of its own, and converges better
   order_nodes(stuffed);
+  if (params.error == 0 || (filling.is_kept && stuffed.mesh.tets.size() == filled)) return std::move(stuffed);
   const ScopedStage stage(job.times, "tetrahedralize/check");
   if (const double reached = measure_deviation(solid.surface, stuffed.mesh, job.threads).two_way();
       reached > params.error)
@@ -227,13 +234,20 @@ StuffedMesh grade_solid(const Job& job, const Solid& solid, const ErrorBudgetPar
   return std::move(stuffed);
 }
 
-Filling fill_with_error(const Job& job, double error) {
-  ErrorBudgetParams params;
-  params.error = error;
-  require_size(job, params.base_edge * error);
+/// Fills with graded sizes. A count is shared out by the solids' areas.
+Filling fill_with_grades(const Job& job) {
+  const TetrahedralizeParams& params = job.params;
+  if (params.edge > 0) require_size(job, params.edge);
+  if (params.error > 0) require_size(job, 12 * params.error);
+  double area = 0;
+  for (const Solid& solid : job.solids) area += solid.parts.area();
   Filling filling;
-  filling.edge = params.base_edge * error;
-  for (const Solid& solid : job.solids) filling.meshes.push_back(grade_solid(job, solid, params));
+  filling.edge = params.edge;
+  for (const Solid& solid : job.solids) {
+    const double tets = static_cast<double>(params.tets) * solid.parts.area() / area;
+    filling.meshes.push_back(grade_solid(job, solid, {.error = params.error, .tets = tets, .base_edge = params.edge}));
+  }
+  if (params.tets > 0 && filling.tets() > 0) warn_of_count(job, static_cast<double>(params.tets), filling.tets());
   return filling;
 }
 
@@ -243,6 +257,11 @@ void require_params(const TetrahedralizeParams& params, const std::string& name)
         fmt::format("body '{}': edge = {} m, tets = {}, error = {} m: exactly one of the sizes must be set. Accepted: "
                     "one above 0. Give tets (for example 20000) and leave the others out.",
                     name, params.edge, params.tets, params.error));
+  if (params.graded && params.mode == TetMode::Embedded)
+    throw input_error(
+        fmt::format("body '{}': graded = true with mode = \"embedded\": whole lattice tetrahedra have one size. "
+                    "Accepted: graded with conforming. Leave one of the two out.",
+                    name));
   if (params.error > 0 && params.mode == TetMode::Embedded)
     throw input_error(
         fmt::format("body '{}': error = {} m with mode = \"embedded\": whole lattice tetrahedra do not follow the "
@@ -269,7 +288,7 @@ void finish_solids(const Job& job, Filling& filling) {
   for (std::size_t s = 0; s < filling.meshes.size(); ++s) {
     const Solid& solid = job.solids[s];
     StuffedMesh& stuffed = filling.meshes[s];
-    if (job.params.error == 0) {
+    if (!job.is_graded()) {
       const ScopedStage stage(job.times, "tetrahedralize/fit");
       fit_boundary(stuffed, solid.surface, {}, job.threads);
     }
@@ -298,7 +317,7 @@ TetMesh join_meshes(std::vector<StuffedMesh>& meshes) {
 
 Filling fill(const Job& job) {
   const TetrahedralizeParams& params = job.params;
-  if (params.error > 0) return fill_with_error(job, params.error);
+  if (job.is_graded()) return fill_with_grades(job);
   return params.edge > 0 ? fill_with_edge(job, params.edge) : fill_with_count(job, static_cast<double>(params.tets));
 }
 
@@ -320,7 +339,7 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
   if (!embedded) finish_solids(job, filling);
   TetMesh mesh = join_meshes(filling.meshes);
   const ScopedStage stage(times, "tetrahedralize/check");
-  require_quality(mesh, embedded ? kCellAngles : params.error > 0 ? kGradedAngles : kUniformAngles, name, threads);
+  require_quality(mesh, embedded ? kCellAngles : job.is_graded() ? kGradedAngles : kUniformAngles, name, threads);
   if (!embedded) require_manifold(mesh, name);
   return mesh;
 }

@@ -22,7 +22,8 @@ enum class TetMode {
 struct TetrahedralizeParams {
   double edge = 0;        ///< long edge of the lattice, m
   std::int64_t tets = 0;  ///< wanted number of tetrahedra, met within 5 %
-  double error = 0;       ///< wanted two-way distance to the surface, m: graded, see error_budget.h; no lattice
+  double error = 0;       ///< wanted two-way distance to the surface, m; always graded, see error_budget.h; no lattice
+  bool graded = false;    ///< with edge or tets: that edge at the surface only, or so many where they serve it best
   double thickness = 0;   ///< of the open parts of the surface, m; 0: they count as closed where they nearly are
   TetMode mode = TetMode::Conforming;
   bool optimize = false;  ///< makes the worst angles better by moves and flips, see improvement/angle_improvement.h

@@ -52,6 +52,18 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& points, const std::vector<Tr
   corners_.swap(sorted);
 }
 
+TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, double squared_enough) const {
+  Nearest guess;
+  if (place >= 0) {
+    const auto& [a, b, c] = corners_[static_cast<std::size_t>(place)];
+    guess.point = nearest_on_triangle(p, a, b, c);
+    guess.triangle = order_[static_cast<std::size_t>(place)];
+    guess.squared_distance = (guess.point - p).squaredNorm();
+    guess.place = place;
+  }
+  return search(p, guess, squared_enough, [](Index, const Vec3&) { return true; });
+}
+
 void TriangleTree::build(std::vector<Vec3>& centroids, Index begin, Index end) {
   const auto number = static_cast<Index>(nodes_.size());
   Node node{Vec3::Constant(1e300), Vec3::Constant(-1e300), begin, end, 0};

@@ -38,6 +38,10 @@ class TriangleTree {
     return nearest(p, 1e300, [](Index, const Vec3&) { return true; });
   }
 
+  /// The same, quicker from a guess: the place in order() of a triangle that may be near, -1 for none. Of triangles
+  /// nearer than sqrt(squared_enough) the first one met will do.
+  Nearest nearest_from(const Vec3& p, Index place, double squared_enough = -1) const;
+
   const std::vector<Node>& nodes() const { return nodes_; }
   /// Numbers of the triangles in the order of the leaves.
   const std::vector<Index>& order() const { return order_; }
@@ -46,6 +50,8 @@ class TriangleTree {
 
  private:
   void build(std::vector<Vec3>& centroids, Index begin, Index end);
+  template <typename Accept>
+  Nearest search(const Vec3& p, Nearest best, double squared_enough, const Accept& accept) const;
 
   std::vector<Node> nodes_;
   std::vector<Index> order_;
@@ -61,6 +67,12 @@ template <typename Accept>
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& p, double squared_limit, const Accept& accept) const {
   Nearest best;
   best.squared_distance = squared_limit;
+  return search(p, best, -1, accept);
+}
+
+template <typename Accept>
+TriangleTree::Nearest TriangleTree::search(const Vec3& p, Nearest best, double squared_enough,
+                                           const Accept& accept) const {
   if (nodes_.empty()) return best;
   struct Entry {
     Index node;
@@ -73,7 +85,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& p, double squared_limit,
     return squared_box_distance(p, node.min, node.max);
   };
   stack[depth++] = {0, box_distance(0)};
-  while (depth > 0) {
+  while (depth > 0 && best.squared_distance > squared_enough) {
     const Entry entry = stack[--depth];
     if (entry.squared_distance > best.squared_distance) continue;
     const Node& node = nodes_[static_cast<std::size_t>(entry.node)];

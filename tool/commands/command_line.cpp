@@ -184,10 +184,14 @@ void add_mesh_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   CLI::Option* count = tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
                            ->check(CLI::Range(10L, 100000000L))
                            ->excludes(edge);
-  tets->add_option("--error", options.error,
-                   "distance to the surface to keep to: in the mesh's unit, or as 0.3% of its box's diagonal; graded")
-      ->excludes(edge)
-      ->excludes(count);
+  CLI::Option* error = tets->add_option("--error", options.error,
+                                        "distance to the surface to keep to: in the mesh's unit, or as 0.3% of its "
+                                        "box's diagonal; always graded")
+                           ->excludes(edge)
+                           ->excludes(count);
+  tets->add_flag("--graded", options.graded,
+                 "with --tets: fine where the surface asks for it and coarse inside; with --edge: coarse inside only")
+      ->excludes(error);
   tets->add_option(
           "--mode", options.mode,
           "conforming: the boundary follows the surface; embedded: whole lattice tetrahedra, weighted by their "

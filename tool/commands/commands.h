@@ -82,7 +82,7 @@ struct TetrahedralizeOptions {
   double edge = 0, fit = 0, thickness = 0;
   long tets = 0;
   int threads = 0;
-  bool optimize = false, quiet = false, json = false;
+  bool graded = false, optimize = false, quiet = false, json = false;
   PictureOptions picture;
 };
 

@@ -113,6 +113,8 @@ void require_no_sizes(const TetrahedralizeOptions& options) {
   const std::pair<const char*, bool> given[] = {{"--edge", options.edge != 0},
                                                 {"--tets", options.tets != 0},
                                                 {"--error", !options.error.empty()},
+                                                {"--graded", options.graded},
+                                                {"--mode embedded", options.mode == "embedded"},
                                                 {"--thickness", options.thickness != 0},
                                                 {"--fit", options.fit != 0}};
   for (const auto& [name, is_given] : given)
@@ -150,6 +152,7 @@ Result fill(const TetrahedralizeOptions& options, const Threads& threads, const 
   TetrahedralizeParams params{.edge = options.edge,
                               .tets = options.tets,
                               .error = parse_error_budget(options.error, used_bounds(result.surface).diagonal()),
+                              .graded = options.graded,
                               .thickness = options.thickness,
                               .mode = options.mode == "embedded" ? TetMode::Embedded : TetMode::Conforming,
                               .optimize = options.optimize};

@@ -124,6 +124,9 @@ void add_placement_fields(Table<BodySettings>& t) {
            "Tetrahedra made elsewhere, in the place and unit of mesh: .mesh (Medit), .msh (Gmsh), .vtk, .vtu; instead "
            "of tets. Such a file as mesh is both: its boundary is the surface.",
            "made by softreel")
+      .add("graded", &B::graded, toggle(), "",
+           "With tets: sizes fine where the surface asks for it and coarse inside; with edge: coarse inside only. With "
+           "error they are always graded.")
       .add("mode", &B::mode, choice<TetMode>({{"conforming", TetMode::Conforming}, {"embedded", TetMode::Embedded}}),
            "",
            "How tetrahedra fill the surface: they end at it, or whole lattice cells hold it, weighted by how full they "

@@ -99,6 +99,7 @@ struct BodySettings {
   double edge = 0;                 ///< m; or
   std::int64_t tets = 0;           ///< number of tetrahedra; or
   BodyLength error;                ///< largest distance to the surface; one of the four is set
+  bool graded = false;             ///< with tets or edge: sizes by what the surface asks for
   TetMode mode = TetMode::Conforming;
   bool optimize = false;  ///< makes the worst angles of the tetrahedra better
   double thickness = 0;   ///< m, of open sheets; 0: none

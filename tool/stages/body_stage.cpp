@@ -82,6 +82,7 @@ TetMesh make_tets(const BodySettings& body, const LoadedBody& loaded, const RunC
   const TetrahedralizeParams params{.edge = body.edge,
                                     .tets = body.tets,
                                     .error = budget_of(body, loaded),
+                                    .graded = body.graded,
                                     .thickness = body.thickness,
                                     .mode = body.mode,
                                     .optimize = body.optimize};
@@ -116,6 +117,7 @@ StageKey filled_key(const BodySettings& body, const LoadedBody& loaded) {
       .add(body.tets)
       .add(budget_of(body, loaded))
       .add(body.thickness)
+      .add(body.graded)
       .add(body.mode)
       .add(body.optimize)
       .key();

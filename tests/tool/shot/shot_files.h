@@ -150,6 +150,7 @@ mesh = "/meshes/a.ply"
 scale = 0.01
 material = "gel"
 tets = 5000
+graded = true
 
 [body.third_by_name]
 mesh = "meshes/c.ply"
