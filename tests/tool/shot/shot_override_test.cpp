@@ -107,7 +107,7 @@ TEST_F(SetOverrides, SayWhatIsWrongWithThem) {
 
 TEST_F(SetOverrides, AskWhichOfSeveralBodiesIsMeant) {
   const std::string said = message(kFullShot, {"body.tets=3"});
-  EXPECT_NE(said.find("the shot has 2 bodies"), std::string::npos) << said;
+  EXPECT_NE(said.find("the shot has 4 bodies"), std::string::npos) << said;
   EXPECT_NE(said.find("Name the body: body.second_by_name.tets"), std::string::npos) << said;
 }
 
