@@ -3,11 +3,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 
 #include <gtest/gtest.h>
 
 #include "core/mesh/mesh_check.h"
 #include "tests/core/mesh/mesh_files.h"
+#include "tests/support/surfaces.h"
 
 namespace softreel {
 namespace {
@@ -132,6 +134,34 @@ TEST(RepairMesh, SaysThatAMoebiusStripHasOneSide) {
   EXPECT_EQ(repair_mesh(mesh),
             std::vector<std::string>({"1 one-sided piece(s) cannot be oriented and stay as they are"}));
   EXPECT_EQ(mesh.triangles, before);
+}
+
+/// A unit ball of 4,800 triangles and small tetrahedra all over its box, each turned inward: bubbles in the ball, or
+/// stray pieces beside it.
+TEST(RepairMesh, KeepsBubblesInABallAndTurnsWhatLiesBesideIt) {
+  SurfaceMesh mesh = test::make_sphere(1, 20, Vec3::Zero());
+  const std::size_t ball = mesh.triangles.size();
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> place(-0.95, 0.95);
+  std::vector<bool> is_bubble;
+  while (is_bubble.size() < 400) {
+    const Vec3 p(place(random), place(random), place(random));
+    if (std::abs(p.norm() - 1) < 0.1) continue;
+    is_bubble.push_back(p.norm() < 1);
+    const auto first = static_cast<Index>(mesh.positions.size());
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+      mesh.positions.push_back(p + 0.02 * corner);
+    for (const Triangle& t : {Triangle{0, 1, 2}, Triangle{0, 3, 1}, Triangle{0, 2, 3}, Triangle{1, 3, 2}})
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  mesh.triangle_polygon.assign(mesh.triangles.size(), 0);
+  const std::vector<Triangle> given = mesh.triangles;
+  repair_mesh(mesh);
+  ASSERT_EQ(mesh.triangles.size(), given.size());
+  EXPECT_TRUE(std::equal(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(ball), mesh.triangles.begin()));
+  for (std::size_t piece = 0; piece < is_bubble.size(); ++piece)
+    for (std::size_t t = ball + 4 * piece; t < ball + 4 * (piece + 1); ++t)
+      EXPECT_EQ(mesh.triangles[t] == given[t], is_bubble[piece]) << piece;
 }
 
 }  // namespace
