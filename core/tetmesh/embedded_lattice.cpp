@@ -56,7 +56,7 @@ class Cover {
   }
 
  private:
-  Index copies() const { return cells_.back().first_copy + cells_.back().parts.count; }
+  Index copies() const { return cells_.empty() ? 0 : cells_.back().first_copy + cells_.back().parts.count; }
 
   /// Cells with triangles, and those between them that have a corner inside.
   void find_cells() {

@@ -31,8 +31,8 @@ struct EmbeddedLattice {
   TetMesh mesh;         ///< with fill, and carriers per carried point: -1 for one outside all elements
   Index cut_cells = 0;  ///< lattice tetrahedra that the surface passes
   Index copies = 0;     ///< elements beyond the first of their lattice tetrahedron
-  Index branches = 0;   ///< copies that share a face with another of the same lattice tetrahedron: a node, an edge or a
-                        ///< face there is no manifold, as a limb ends there that is two or more beside each other
+  Index branches = 0;   ///< copies that share a face with another of the same lattice tetrahedron, where limbs side by
+                        ///< side in it join: there alone the boundary is no manifold, for three elements meet at a face
 };
 
 /// Covers a surface at the lattice of `frame`. Every triangle lies in elements, and with its vertices in those of its

@@ -37,7 +37,8 @@ struct TetrahedralizeParams {
 /// "tetrahedralize/...".
 ///
 /// Embedded mode covers the surface instead: dihedral angles of 60 and 90 degrees; nothing is too thin for it; the mesh
-/// has the fill of each element and the carrier of each vertex of `surface`. Not with an error.
+/// has the fill of each element and the carrier of each vertex of `surface`; its boundary is a manifold but where limbs
+/// that lie side by side in one lattice tetrahedron join. Not with an error.
 TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& params, const std::string& name,
                        const Threads& threads, const Log& log, StageTimes& times);
 

@@ -67,7 +67,7 @@ const BadFile kBadFiles[] = {
     {"Flat", "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "flat"},
     {"OnePlace", "a.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "no triangles"},
     {"NoNumbers", "a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"},
-    {"Tetrahedra", "a.vtu", "<VTKFile/>", "holds tetrahedra"},
+    {"Tetrahedra", "a.vtu", "<VTKFile/>", "a VTK file of another kind"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Program, BadFiles, ::testing::ValuesIn(kBadFiles),

@@ -114,11 +114,13 @@ TEST(EmbeddedMode, OfAShotIsReadBackFromTheCache) {
 
 TEST(ErrorBudget, OfAShotGivesAGradedBody) {
   const std::string folder = shot_folder("graded");
-  for (const char* budget : {"'\"1%\"'", "0.02"}) {
+  int before = 100;
+  for (const char* budget : {"'\"2%\"'", "0.015", "'\"0.4%\"'"}) {
     const Outcome outcome = run(fmt::format(
         "softreel render {0}/shot.toml --output {0}/out --quiet --frames 1-2 --set body.error={1}", folder, budget));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_GT(report_of(folder)["tets"].get<int>(), 1000);
+    EXPECT_GT(report_of(folder)["tets"].get<int>(), before) << budget;
+    before = report_of(folder)["tets"].get<int>();
   }
 }
 
