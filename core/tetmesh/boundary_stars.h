@@ -1,4 +1,5 @@
-/// The boundary of stuffed tetrahedra by its nodes: the elements, faces and edges round each, and what angles they have.
+/// The boundary of stuffed tetrahedra by its nodes: the elements, faces and edges round each, and what angles they
+/// have.
 #pragma once
 
 #include <array>
@@ -47,9 +48,9 @@ struct BoundaryStars {
   /// Of the elements at boundary node `b`.
   CosineRange cosines(const TetMesh& mesh, std::size_t b) const;
 
-  std::vector<BoundaryFace> faces;          ///< nodes of each ascending
-  std::vector<std::array<Index, 2>> edges;  ///< of the boundary, nodes ascending
-  std::vector<Index> nodes, numbers;        ///< nodes on the boundary; per mesh node its place there, -1 inside
+  std::vector<BoundaryFace> faces;                 ///< nodes of each ascending
+  std::vector<std::array<Index, 2>> edges;         ///< of the boundary, nodes ascending
+  std::vector<Index> nodes, numbers;               ///< nodes on the boundary; per mesh node its place there, -1 inside
   CompressedList elements_of, faces_of, edges_of;  ///< per boundary node
 };
 

@@ -11,6 +11,7 @@
 #include "core/tetmesh/graded_octree.h"
 #include "core/tetmesh/graded_stuffing.h"
 #include "core/tetmesh/hidden_surface.h"
+#include "core/tetmesh/surface_samples.h"
 
 namespace softreel {
 namespace {
@@ -291,7 +292,8 @@ class Filling {
       std::vector<Vec3> points{gap.on_surface, gap.on_boundary};
       if (gap.face[0] >= 0) {
         const std::array<Vec3, 3> face = corners(stuffed.mesh.nodes, gap.face);
-        for (std::size_t k = 0; k < 3; ++k) points.emplace_back(0.8 * face[k] + 0.1 * (face[(k + 1) % 3] + face[(k + 2) % 3]));
+        for (std::size_t k = 0; k < 3; ++k)
+          points.emplace_back(0.8 * face[k] + 0.1 * (face[(k + 1) % 3] + face[(k + 2) % 3]));
       }
       std::int32_t most = 0;
       for (const Vec3& p : points) most = std::max(most, octree_.level_at(p));

@@ -26,8 +26,8 @@ struct GradedFilling {
   bool is_kept = false;      ///< the error: measured, not only hoped for
 };
 
-/// Fills, fits, measures, and refines where the boundary and the surface are furthest apart: with `error` until they are
-/// nowhere further apart or the finest edge is reached there, with `tets` until there are so many, within 5 %; with
+/// Fills, fits, measures, and refines where the boundary and the surface are furthest apart: with `error` until they
+/// are nowhere further apart or the finest edge is reached there, with `tets` until there are so many, within 5 %; with
 /// neither there is no refinement. The boundary is a manifold. Equal bits at any number of threads. Cost: about five
 /// times that of the last mesh.
 GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads);

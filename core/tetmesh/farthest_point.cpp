@@ -65,9 +65,7 @@ class Search {
   }
 
  private:
-  Probe middle(const Probe& a, const Probe& b) const {
-    return probe(tree_, 0.5 * (a.point + b.point), a.leaf_place);
-  }
+  Probe middle(const Probe& a, const Probe& b) const { return probe(tree_, 0.5 * (a.point + b.point), a.leaf_place); }
 
   double upper_bound(const Probe& a, const Probe& b, const Probe& c) const {
     double least = 1e300;
@@ -147,16 +145,15 @@ void visit_far(const std::vector<Vec3>& points, const std::vector<Triangle>& tri
                double limit, const Threads& threads, const With& with) {
   const std::vector<Probe> probes = probe_points(points, triangles, tree, threads);
   const Search search(tree, limit, kSmallest * mean_edge(points, triangles, tree));
-  threads.for_chunks(
-      static_cast<std::int64_t>(triangles.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-        std::vector<Vec3> far;
-        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-          const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
-          far.clear();
-          search.collect(corner(0), corner(1), corner(2), far);
-          with(t, far);
-        }
-      });
+  threads.for_chunks(static_cast<std::int64_t>(triangles.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Vec3> far;
+    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+      const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
+      far.clear();
+      search.collect(corner(0), corner(1), corner(2), far);
+      with(t, far);
+    }
+  });
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ constexpr double kFarthestTolerance = 0.01;
 double farthest_distance(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                          const TriangleTree& tree, const Threads& threads);
 
-/// Points of the triangles that are further than `limit` from the tree, found in the same way: where a triangle has some,
-/// at least one of them. In the order of the triangles.
+/// Points of the triangles that are further than `limit` from the tree, found in the same way: where a triangle has
+/// some, at least one of them. In the order of the triangles.
 std::vector<Vec3> find_far_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                   const TriangleTree& tree, double limit, const Threads& threads);
 

@@ -132,7 +132,8 @@ SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, const std::
         continue;
       }
       const Vec3 p = lattice_position(frame_, list[i]);
-      const TriangleTree::Nearest found = tree_.nearest(p, reaches[i] * reaches[i], [](Index, const Vec3&) { return true; });
+      const TriangleTree::Nearest found =
+          tree_.nearest(p, reaches[i] * reaches[i], [](Index, const Vec3&) { return true; });
       double distance = std::sqrt(found.squared_distance);
       bool inside = false;
       if (crossings_) {

@@ -307,8 +307,7 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
     const ScopedStage stage(times, "tetrahedralize/fit");
     fit_boundary(stuffed, prepared, {}, threads);
   }
-  require_quality(job, stuffed.mesh,
-                  graded ? AngleBounds{kMinGradedDihedral, kMaxGradedDihedral} : AngleBounds{});
+  require_quality(job, stuffed.mesh, graded ? AngleBounds{kMinGradedDihedral, kMaxGradedDihedral} : AngleBounds{});
   return std::move(stuffed.mesh);
 }
 
