@@ -1,7 +1,6 @@
 #include "core/tetmesh/boundary_fit.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -9,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include "core/tetmesh/boundary_stars.h"
+#include "core/tetmesh/surface_samples.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
@@ -358,47 +358,6 @@ class BoundaryFit::Fit {
   std::vector<Probe> probes_;
   std::vector<bool> moved_;  ///< per boundary node: since the last search
 };
-
-namespace {
-
-std::uint64_t position_key(const Vec3& p) {
-  std::uint64_t key = 0;
-  for (int k = 0; k < 3; ++k) key = (key ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9e3779b97f4a7c15ULL;
-  return key;
-}
-
-}  // namespace
-
-void FitMemory::add(const Vec3& before, const Vec3& after) {
-  if (keys_.insert(position_key(before)).second) steps_.push_back({before, after});
-}
-
-const Vec3* FitMemory::find(const Vec3& before) const {
-  const Index number = keys_.find(position_key(before));
-  return number >= 0 && steps_[at(number)][0] == before ? &steps_[at(number)][1] : nullptr;
-}
-
-std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const std::vector<Index>& order, double step) {
-  std::vector<Vec3> samples;
-  std::vector<bool> taken(surface.positions.size(), false);
-  for (const Index t : order) {
-    const Triangle& triangle = surface.triangles[at(t)];
-    std::array<Vec3, 3> x;
-    double longest = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      x[k] = surface.positions[at(triangle[k])];
-      if (!taken[at(triangle[k])]) samples.push_back(x[k]);
-      taken[at(triangle[k])] = true;
-      longest = std::max(longest, (x[k] - surface.positions[at(triangle[(k + 1) % 3])]).norm());
-    }
-    const int n = static_cast<int>(std::ceil(longest / step));
-    for (int i = 0; i <= n && n > 1; ++i)
-      for (int j = 0; i + j <= n; ++j)
-        samples.emplace_back(x[0] + (static_cast<double>(i) / n) * (x[1] - x[0]) +
-                             (static_cast<double>(j) / n) * (x[2] - x[0]));
-  }
-  return samples;
-}
 
 BoundaryFit::BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples,
                          const BoundaryFitParams& params, const Threads& threads, FitMemory* memory)

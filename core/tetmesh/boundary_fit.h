@@ -1,14 +1,13 @@
 /// Draws the boundary of stuffed tetrahedra onto the surface, as far as the dihedral angles allow.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
 #include "core/base/parallel.h"
 #include "core/mesh/surface_mesh.h"
+#include "core/tetmesh/fit_memory.h"
 #include "core/tetmesh/isosurface_stuffing.h"
-#include "core/tetmesh/key_index.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
@@ -21,27 +20,11 @@ struct BoundaryFitParams {
   double tolerance = 0.15;      ///< spacings: what is nearer than this moves no node
 };
 
-/// Points of a surface: its used vertices, and a grid with steps of at most `step` over triangles with longer edges. In
-/// the order of the triangles in `order`, which should be that of a tree: neighbours are to be near in memory.
-std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const std::vector<Index>& order, double step);
-
 /// Where the boundary and the surface are apart.
 struct BoundaryGap {
   Vec3 on_surface, on_boundary;
   Triangle face;               ///< of the boundary, at the gap; of nodes and edges too, with equal ones
   bool from_boundary = false;  ///< the point of the boundary was given, that of the surface is nearest to it
-};
-
-/// Where nodes were before and after an earlier fit, so that a fit of a similar mesh begins there.
-class FitMemory {
- public:
-  void add(const Vec3& before, const Vec3& after);
-  /// Where the fit took a node that began at exactly `before`; null if there was none.
-  const Vec3* find(const Vec3& before) const;
-
- private:
-  KeyIndex keys_;
-  std::vector<std::array<Vec3, 2>> steps_;
 };
 
 /// Moves boundary nodes to the nearest point of the surface; then those whose faces miss it by more than the tolerance

@@ -11,6 +11,7 @@
 #include "core/tetmesh/graded_octree.h"
 #include "core/tetmesh/graded_stuffing.h"
 #include "core/tetmesh/hidden_surface.h"
+#include "core/tetmesh/surface_samples.h"
 
 namespace softreel {
 namespace {
