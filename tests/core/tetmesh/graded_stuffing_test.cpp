@@ -26,7 +26,7 @@ Bounds box_of(double half_size) {
 GradedOctree random_octree(std::mt19937& random, double spacing) {
   std::uniform_real_distribution<double> value(-1.0, 1.0);
   GradedOctree octree({Vec3(0.01, 0.02, 0.03), spacing}, box_of(1.2), kTop);
-  for (std::int32_t k = 0; k < 20; ++k) octree.refine(Vec3(value(random), value(random), value(random)), k % kTop);
+  for (std::int32_t k = 0; k < 20; ++k) octree.refine(Vec3(value(random), value(random), value(random)), k % kTop, 0.5);
   return octree;
 }
 
@@ -72,7 +72,7 @@ TEST(GradedOctree, RefinesRoundAPointAndATriangle) {
   GradedOctree octree({Vec3::Zero(), 0.05}, box_of(1), kTop);
   const Vec3 a(0.3, 0.2, 0.1), b(-0.5, 0.7, 0.2), c(0.1, -0.6, -0.8);
   EXPECT_EQ(octree.level_at(a), kTop);
-  octree.refine(a, 1);
+  octree.refine(a, 1, 0);
   EXPECT_EQ(octree.level_at(a), 1);
   octree.refine({a, b, c}, 0);
   for (double s = 0; s <= 1; s += 0.125)
