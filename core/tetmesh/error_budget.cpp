@@ -34,7 +34,7 @@ constexpr int kFirstRounds = 2, kFirstSweeps = 2, kSweeps = 4;
 constexpr double kFirstLimit = 1.5;
 
 /// So often the error is lowered for one refinement.
-constexpr int kErrorSteps = 8;
+constexpr int kErrorSteps = 16;
 
 /// So many fillings a count may take, and so many of them once it is met, of which the one with the least distance is
 /// kept.
@@ -326,7 +326,20 @@ class Filling {
 }  // namespace
 
 GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
-  return Filling(surface, params, threads).run();
+  GradedFilling best = Filling(surface, params, threads).run();
+  const auto miss = [&](const GradedFilling& filling) {
+    return std::abs(static_cast<double>(filling.stuffed.mesh.tets.size()) / params.tets - 1);
+  };
+  // Flat sides ask for nothing, and creases for no more than the finest edge: then the base edge has to be another.
+  ErrorBudgetParams other = params;
+  constexpr int kBaseEdges = 4;
+  for (int i = 0; i < kBaseEdges && params.tets > 0 && miss(best) > kCountTolerance; ++i) {
+    const double share = static_cast<double>(best.stuffed.mesh.tets.size()) / params.tets;
+    other.base_edge = best.stuffed.mesh.lattice.spacing * std::clamp(0.95 * std::sqrt(share), 0.5, 2.0);
+    GradedFilling filling = Filling(surface, other, threads).run();
+    if (miss(filling) < miss(best)) best = std::move(filling);
+  }
+  return best;
 }
 
 }  // namespace softreel

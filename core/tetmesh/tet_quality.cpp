@@ -88,7 +88,7 @@ SurfaceDeviation measure_deviation(const SurfaceMesh& surface, const TetMesh& me
   if (deviation.from_surface <= limit || boundary.empty()) return deviation;
   const std::vector<std::uint8_t> suspected =
       find_far_triangles(surface.positions, surface.triangles, boundary_tree, limit, threads);
-  const SurfaceMesh visible = without_hidden(surface, suspected, limit, threads);
+  const SurfaceMesh visible = without_hidden(surface, suspected, 0.5 * limit, threads);
   deviation.from_surface = farthest_distance(visible.positions, visible.triangles, boundary_tree, threads);
   return deviation;
 }

@@ -72,7 +72,7 @@ TEST(GradedOctree, RefinesRoundAPointAndATriangle) {
   GradedOctree octree({Vec3::Zero(), 0.05}, box_of(1), kTop);
   const Vec3 a(0.3, 0.2, 0.1), b(-0.5, 0.7, 0.2), c(0.1, -0.6, -0.8);
   EXPECT_EQ(octree.level_at(a), kTop);
-  octree.refine(a, 1, 0.5);
+  octree.refine(a, 1, 0);
   EXPECT_EQ(octree.level_at(a), 1);
   octree.refine({a, b, c}, 0);
   for (double s = 0; s <= 1; s += 0.125)
