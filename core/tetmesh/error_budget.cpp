@@ -33,6 +33,10 @@ constexpr double kCertain = 0.98;
 constexpr int kFirstRounds = 2, kFirstSweeps = 2, kSweeps = 4;
 constexpr double kFirstLimit = 1.5;
 
+/// So many fillings an error may take. The last ones go after single places: what a refinement mends may spoil what is
+/// beside it.
+constexpr int kErrorRounds = 40, kSingleRounds = 8;
+
 /// So often the error is lowered for one refinement.
 constexpr int kErrorSteps = 16;
 
@@ -98,14 +102,15 @@ class Filling {
   GradedFilling run() {
     if (params_.tets > 0) return run_to_count();
     GradedFilling filling;
-    const int rounds = params_.error > 0 ? params_.finer + 8 : 1;
+    const int rounds = params_.error > 0 ? kErrorRounds : 1;
     for (int round = 0; round < rounds; ++round) {
       filling = fill();
       std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
       const bool is_certain = gaps.empty();
       if (is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
       filling.is_kept = gaps.empty();
-      if (round + 1 == rounds || refine(filling.stuffed, gaps, 1e300)) continue;
+      const double margin = round < kSingleRounds ? 0.0 : 0.5;
+      if (round + 1 == rounds || refine(filling.stuffed, gaps, 1e300, margin)) continue;
       // Samples that no size reaches hide what lies between others.
       if (!is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
       if (is_certain || !refine(filling.stuffed, gaps, 1e300)) break;
@@ -278,7 +283,7 @@ class Filling {
 
   /// Halves the largest leaves at each gap, the widest gaps first, until there are so many leaves more. False if there
   /// is none that may be halved.
-  bool refine(const StuffedMesh& stuffed, std::vector<BoundaryGap>& gaps, double more_leaves) {
+  bool refine(const StuffedMesh& stuffed, std::vector<BoundaryGap>& gaps, double more_leaves, double margin = 0) {
     std::erase_if(gaps, [&](const BoundaryGap& gap) { return is_in_hole(gap); });
     const auto width = [](const BoundaryGap& gap) { return (gap.on_surface - gap.on_boundary).squaredNorm(); };
     std::stable_sort(gaps.begin(), gaps.end(),
@@ -303,7 +308,7 @@ class Filling {
     const std::size_t before = octree_.cells().size();
     for (const Wish& wish : wishes) {
       if (kNewLeaves * static_cast<double>(octree_.cells().size() - before) >= more_leaves) break;
-      octree_.refine(wish.point, wish.level, 0.0);
+      octree_.refine(wish.point, wish.level, margin);
     }
     return octree_.cells().size() > before;
   }
