@@ -109,6 +109,7 @@ class Filling {
       const bool is_certain = gaps.empty();
       if (is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
       filling.is_kept = gaps.empty();
+      filling.has_holes = !rims_.empty();
       const double margin = round < kSingleRounds ? 0.0 : 0.5;
       if (round + 1 == rounds || refine(filling.stuffed, gaps, 1e300, margin)) continue;
       // Samples that no size reaches hide what lies between others.
@@ -335,6 +336,14 @@ GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& p
   const auto miss = [&](const GradedFilling& filling) {
     return std::abs(static_cast<double>(filling.stuffed.mesh.tets.size()) / params.tets - 1);
   };
+  // A lattice may lie badly to a crease or a slit: another one then, unless holes keep the error from being met.
+  constexpr int kLattices = 3;
+  for (int i = 1; i < kLattices && params.error > 0 && !best.is_kept && !best.has_holes; ++i) {
+    ErrorBudgetParams shorter = params;
+    shorter.base_edge = kBaseEdge * params.error * std::pow(0.83, i);
+    GradedFilling filling = Filling(surface, shorter, threads).run();
+    if (filling.is_kept) best = std::move(filling);
+  }
   // Flat sides ask for nothing, and creases for no more than the finest edge: then the base edge has to be another.
   ErrorBudgetParams other = params;
   constexpr int kBaseEdges = 4;

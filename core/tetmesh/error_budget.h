@@ -24,6 +24,7 @@ struct GradedFilling {
   SurfaceDistance distance;  ///< stuffed.lattice_nodes are its nodes
   double finest_edge = 0;    ///< m
   bool is_kept = false;      ///< the error: measured, not only hoped for
+  bool has_holes = false;    ///< the surface is open
 };
 
 /// Fills, fits, measures, and refines where the boundary and the surface are furthest apart: with `error` until they
