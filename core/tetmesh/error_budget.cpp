@@ -341,6 +341,7 @@ GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& p
   for (int i = 1; i < kLattices && params.error > 0 && !best.is_kept && !best.has_holes; ++i) {
     ErrorBudgetParams shorter = params;
     shorter.base_edge = kBaseEdge * params.error * std::pow(0.83, i);
+    shorter.finer = params.finer + 1;
     GradedFilling filling = Filling(surface, shorter, threads).run();
     if (filling.is_kept) best = std::move(filling);
   }
