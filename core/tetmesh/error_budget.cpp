@@ -37,12 +37,20 @@ constexpr double kFirstLimit = 1.5;
 /// beside it.
 constexpr int kErrorRounds = 40, kSingleRounds = 8;
 
+/// The widest gap is narrower than before if it is less than this share of it; after so many rounds without that there
+/// is an end, of closed and of open surfaces.
+constexpr double kNarrower = 0.97;
+constexpr int kPatience = 12, kOpenPatience = 2;
+
+/// Pieces of at most this share of the elements are loose.
+constexpr double kLooseShare = 0.02;
+
 /// So often the error is lowered for one refinement.
 constexpr int kErrorSteps = 16;
 
 /// So many fillings a count may take, and so many of them once it is met, of which the one with the least distance is
 /// kept.
-constexpr int kCountRounds = 20, kMendingRounds = 4;
+constexpr int kCountRounds = 20, kMendingRounds = 3;
 
 /// Of eight new cells one takes the place of the leaf that was split.
 constexpr double kNewLeaves = 0.875;
@@ -106,11 +114,13 @@ class Filling {
     for (int round = 0; round < rounds; ++round) {
       filling = fill();
       std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
+      add_loose_pieces(filling.stuffed, gaps);
       const bool is_certain = gaps.empty();
       if (is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
       filling.is_kept = gaps.empty();
-      filling.has_holes = !rims_.empty();
       const double margin = round < kSingleRounds ? 0.0 : 0.5;
+      std::erase_if(gaps, [&](const BoundaryGap& gap) { return is_in_hole(gap); });
+      if (!gaps.empty() && is_stuck(gaps, round)) break;
       if (round + 1 == rounds || refine(filling.stuffed, gaps, 1e300, margin)) continue;
       // Samples that no size reaches hide what lies between others.
       if (!is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
@@ -187,6 +197,31 @@ class Filling {
     }
     if (best_miss >= kCountTolerance && !best.stuffed.mesh.tets.empty()) fit(best.stuffed, kFirstRounds);
     return best;
+  }
+
+  /// Whether the widest gap has long been no narrower than before: no size mends it. A hole's cap is such a gap.
+  bool is_stuck(const std::vector<BoundaryGap>& gaps, int round) {
+    const double width = widest(gaps);
+    if (width < kNarrower * narrowest_) {
+      narrowest_ = width;
+      narrowest_round_ = round;
+    }
+    return round - narrowest_round_ > (rims_.empty() ? kPatience : kOpenPatience);
+  }
+
+  /// Small pieces beside the main ones hang by necks that are thinner than the tetrahedra: gaps as wide as they are.
+  void add_loose_pieces(const StuffedMesh& stuffed, std::vector<BoundaryGap>& gaps) const {
+    const TetMesh& mesh = stuffed.mesh;
+    const std::vector<Index> pieces = face_connected_pieces(mesh);
+    if (pieces.empty()) return;
+    std::vector<Index> counts(at(*std::max_element(pieces.begin(), pieces.end()) + 1), 0);
+    for (const Index piece : pieces) ++counts[at(piece)];
+    if (counts.size() == 1) return;
+    for (const BoundaryFace& face : find_surface_faces(stuffed)) {
+      if (counts[at(pieces[at(face.element)])] > kLooseShare * static_cast<double>(pieces.size())) continue;
+      const Vec3& p = mesh.nodes[at(face.nodes[0])];
+      gaps.push_back({sampler_.tree().nearest(p).point, p, face.nodes});
+    }
   }
 
   static double widest(const std::vector<BoundaryGap>& gaps) {
@@ -318,6 +353,8 @@ class Filling {
   const ErrorBudgetParams& params_;
   const Threads& threads_;
   double base_edge_, error_;
+  double narrowest_ = 1e300;  ///< the least of the widest gaps, and the round it was met in
+  int narrowest_round_ = 0;
   LatticeFrame frame_;
   GradedOctree octree_;
   DistanceSampler sampler_;
@@ -336,15 +373,6 @@ GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& p
   const auto miss = [&](const GradedFilling& filling) {
     return std::abs(static_cast<double>(filling.stuffed.mesh.tets.size()) / params.tets - 1);
   };
-  // A lattice may lie badly to a crease or a slit: another one then, unless holes keep the error from being met.
-  constexpr int kLattices = 3;
-  for (int i = 1; i < kLattices && params.error > 0 && !best.is_kept && !best.has_holes; ++i) {
-    ErrorBudgetParams shorter = params;
-    shorter.base_edge = kBaseEdge * params.error * std::pow(0.83, i);
-    shorter.finer = params.finer + 1;
-    GradedFilling filling = Filling(surface, shorter, threads).run();
-    if (filling.is_kept) best = std::move(filling);
-  }
   // Flat sides ask for nothing, and creases for no more than the finest edge: then the base edge has to be another.
   ErrorBudgetParams other = params;
   constexpr int kBaseEdges = 4;

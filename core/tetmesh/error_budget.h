@@ -13,7 +13,7 @@ struct ErrorBudgetParams {
   double error = 0;            ///< wanted two-way distance to the surface, m
   double tets = 0;             ///< wanted number of tetrahedra
   double base_edge = 0;        ///< long edges at the surface where nothing asks for less, m; 0: chosen
-  int finer = 5;               ///< halvings of the base edge, at most
+  int finer = 6;               ///< halvings of the base edge, at most
   int coarser = 2;             ///< doublings of the base edge in the inside, at most
   double fit_tolerance = 0.7;  ///< boundary nodes are moved for what is further away, in units of the error
 };
@@ -24,7 +24,6 @@ struct GradedFilling {
   SurfaceDistance distance;  ///< stuffed.lattice_nodes are its nodes
   double finest_edge = 0;    ///< m
   bool is_kept = false;      ///< the error: measured, not only hoped for
-  bool has_holes = false;    ///< the surface is open
 };
 
 /// Fills, fits, measures, and refines where the boundary and the surface are furthest apart: with `error` until they

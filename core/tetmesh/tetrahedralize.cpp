@@ -95,12 +95,6 @@ StuffedMesh cover_surface(const Job& job, double edge, const Vec3& shift) {
   return {std::move(cover.mesh), {}, {}};
 }
 
-/// Makes what stuffing gives one solid body: a manifold without crumbs, with something of every part.
-void mend_solid(const Job& job, const Solid& solid, const SurfaceDistance& distance, StuffedMesh& stuffed) {
-  drop_crumbs(stuffed, distance, solid.parts, job.name, job.log);
-  require_all_parts(stuffed, distance, solid.parts, job.name, job.log);
-}
-
 /// Stuffs one solid; no promises checked yet.
 StuffedMesh stuff_solid(const Job& job, const Solid& solid, const LatticeFrame& frame) {
   SurfaceDistance distance = [&] {
@@ -120,7 +114,8 @@ StuffedMesh stuff_solid(const Job& job, const Solid& solid, const LatticeFrame& 
         fmt::format("body '{}': {} nodes where parts touched at a vertex or edge were parted, {} tetrahedra where "
                     "the body touched itself were removed",
                     job.name, mending.copied_nodes, mending.removed_tets));
-  mend_solid(job, solid, distance, stuffed);
+  drop_crumbs(stuffed, distance, solid.parts, job.name, job.log);
+  require_all_parts(stuffed, distance, solid.parts, job.name, job.log);
   order_nodes(stuffed);
   return stuffed;
 }
@@ -212,26 +207,28 @@ Filling fill_with_count(const Job& job, double wanted) {
 }
 
 /// Fills one solid with graded sizes; says where an error budget could not be kept.
-StuffedMesh grade_solid(const Job& job, const Solid& solid, const ErrorBudgetParams& params) {
+void grade_solid(const Job& job, const Solid& solid, const ErrorBudgetParams& params, Filling& all) {
   GradedFilling filling = [&] {
     const ScopedStage stage(job.times, "tetrahedralize/lattice");
     return fill_graded(solid.surface, params, job.threads);
   }();
   StuffedMesh& stuffed = filling.stuffed;
   const std::size_t filled = stuffed.mesh.tets.size();
-  stuffed.mesh.lattice.spacing = filling.finest_edge;  // what is small, and what is too thin, is judged by that
-  mend_solid(job, solid, filling.distance, stuffed);
+  drop_crumbs(stuffed, filling.distance, solid.parts, job.name, job.log);  // smaller than a cell of the base edge
+  stuffed.mesh.lattice.spacing = filling.finest_edge;                      // what is too thin is judged by that
+  require_all_parts(stuffed, filling.distance, solid.parts, job.name, job.log);
   stuffed.mesh.lattice = {};  // none of one size: the hierarchy finds coarse lattices of its own, and converges better
   order_nodes(stuffed);
-  if (params.error == 0 || (filling.is_kept && stuffed.mesh.tets.size() == filled)) return std::move(stuffed);
+  all.edge = std::max(all.edge, filling.finest_edge);
+  all.meshes.push_back(std::move(stuffed));
+  const TetMesh& mesh = all.meshes.back().mesh;
+  if (params.error == 0 || (filling.is_kept && mesh.tets.size() == filled)) return;
   const ScopedStage stage(job.times, "tetrahedralize/check");
-  if (const double reached = measure_deviation(solid.surface, stuffed.mesh, job.threads).two_way();
-      reached > params.error)
+  if (const double reached = measure_deviation(solid.surface, mesh, job.threads).two_way(); reached > params.error)
     job.log.warn(
         fmt::format("body '{}': the tetrahedra keep to {:.4g} m of the surface, not to error = {:.4g} m: even edges of "
                     "{:.4g} m do not reach all of it. Accepted: this mesh, as it is. Close or thicken what is thin.",
                     job.name, reached, params.error, filling.finest_edge));
-  return std::move(stuffed);
 }
 
 /// Fills with graded sizes. A count is shared out by the solids' areas.
@@ -242,10 +239,9 @@ Filling fill_with_grades(const Job& job) {
   double area = 0;
   for (const Solid& solid : job.solids) area += solid.parts.area();
   Filling filling;
-  filling.edge = params.edge;
   for (const Solid& solid : job.solids) {
     const double tets = static_cast<double>(params.tets) * solid.parts.area() / area;
-    filling.meshes.push_back(grade_solid(job, solid, {.error = params.error, .tets = tets, .base_edge = params.edge}));
+    grade_solid(job, solid, {.error = params.error, .tets = tets, .base_edge = params.edge}, filling);
   }
   if (params.tets > 0 && filling.tets() > 0) warn_of_count(job, static_cast<double>(params.tets), filling.tets());
   return filling;
