@@ -25,7 +25,8 @@ bool is_tet_mesh_extension(const std::string& extension);
 /// Tetrahedra from the bytes of a file: Medit text, Gmsh 2 or 4.1 (text, binary), VTK .vtu (text, base64, appended;
 /// uncompressed) or legacy .vtk (text, binary).
 ///
-/// name: of the file, for messages. Points, lines and faces are skipped. Inverted elements are turned round and nodes
+/// name: of the file, for messages. Points, lines and faces are skipped; cell data "fill" of .vtu is
+/// TetMesh::fill. Inverted elements are turned round and nodes
 /// that no element uses are left out, each said in one line of `log`. The mesh has no lattice.
 /// Throws input_error, one clear message, for what is broken: an index out of range, a position that is not finite, an
 /// element without volume, elements of other shapes or orders, a file that ends early or has no tetrahedra.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -253,11 +254,14 @@ void require_params(const TetrahedralizeParams& params, const std::string& name)
         fmt::format("body '{}': edge = {} m, tets = {}, error = {} m: exactly one of the sizes must be set. Accepted: "
                     "one above 0. Give tets (for example 20000) and leave the others out.",
                     name, params.edge, params.tets, params.error));
-  if (params.graded && params.mode == TetMode::Embedded)
-    throw input_error(
-        fmt::format("body '{}': graded = true with mode = \"embedded\": whole lattice tetrahedra have one size. "
-                    "Accepted: graded with conforming. Leave one of the two out.",
-                    name));
+  for (const auto& [field, is_set, reason] :
+       {std::tuple("graded", params.graded, "have one size"),
+        std::tuple("optimize", params.optimize, "have angles of 60 and 90 degrees")})
+    if (is_set && params.mode == TetMode::Embedded)
+      throw input_error(fmt::format(
+          "body '{0}': {1} = true with mode = \"embedded\": whole lattice tetrahedra {2}. Accepted: {1} with "
+          "conforming. Leave one of the two out.",
+          name, field, reason));
   if (params.error > 0 && params.mode == TetMode::Embedded)
     throw input_error(
         fmt::format("body '{}': error = {} m with mode = \"embedded\": whole lattice tetrahedra do not follow the "

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/error.h"
 #include "core/tetmesh/improvement/boundary_slide.h"
 #include "core/tetmesh/improvement/flips.h"
 #include "core/tetmesh/improvement/node_smoothing.h"
@@ -139,6 +140,10 @@ std::string describe(const TetQuality& quality) {
 
 AngleImprovement improve_angles(TetMesh& mesh, const SurfaceMesh* surface, const AngleImprovementParams& params,
                                 const Threads& threads) {
+  if (!mesh.fill.empty())
+    throw input_error(
+        "the tetrahedra are partly filled cells of an embedded body, which cannot be moved or flipped. Accepted: "
+        "tetrahedra that end at their surface. Leave the optimisation out.");
   const TetQuality before = measure_quality(mesh, threads);
   std::vector<Triangle> boundary = boundary_faces(mesh);
   std::unique_ptr<BoundarySlide> slide;

@@ -30,8 +30,8 @@ struct AngleImprovement {
 /// The boundary keeps its faces. Its nodes stay without a surface; with one they slide along it if neither the faces
 /// round them get further from the surface nor the surface there from the faces (in samples). Nodes keep their numbers.
 /// Number and order of the elements change. Serial but for the distances; equal bits at any number of threads. Cost: a
-/// millisecond or less per element that is worse than the target, and the measuring. mesh: positive volumes. surface:
-/// may be null.
+/// millisecond or less per element that is worse than the target, and the measuring. mesh: positive volumes; throws
+/// input_error if it has fills, which belong to whole lattice cells. surface: may be null.
 AngleImprovement improve_angles(TetMesh& mesh, const SurfaceMesh* surface, const AngleImprovementParams& params,
                                 const Threads& threads);
 

@@ -46,6 +46,17 @@ Tet checked_tet(const MeshSource& source, const TetFileContents& contents, std::
   return tet;
 }
 
+void check_fill(const MeshSource& source, const TetFileContents& contents) {
+  if (contents.fill.empty()) return;
+  if (contents.fill.size() != contents.tets.size())
+    throw broken_file(source, "", fmt::format("it has {} values of fill", contents.fill.size()),
+                      fmt::format("one for each of its {} tetrahedra", contents.tets.size()), "Write the mesh again");
+  for (std::size_t e = 0; e < contents.fill.size(); ++e)
+    if (!(contents.fill[e] > 0 && contents.fill[e] <= 1))
+      throw broken_file(source, "", fmt::format("tetrahedron {} is filled by a share of {}", e + 1, contents.fill[e]),
+                        "above 0, up to 1", "Leave the cell data \"fill\" out if it means something else");
+}
+
 /// Turns an inverted element round; true if it was one.
 bool orient(const MeshSource& source, const std::vector<Vec3>& nodes, std::size_t e, Tet& tet) {
   std::array<Vec3, 4> x;
@@ -108,8 +119,10 @@ TetMesh decode_tet_mesh(const std::string& name, std::string_view bytes, const s
                                  ".mesh (Medit), .msh (Gmsh), .vtk, .vtu (VTK)");
   const TetFileContents contents = format->read(source);
   check_nodes(source, contents);
+  check_fill(source, contents);
   TetMesh mesh;
   mesh.nodes = contents.nodes;
+  mesh.fill = contents.fill;
   std::size_t inverted = 0;
   for (std::size_t e = 0; e < contents.tets.size(); ++e) {
     mesh.tets.push_back(checked_tet(source, contents, e));

@@ -23,6 +23,7 @@ static_assert(std::endian::native == std::endian::little, "bytes are swapped for
 struct TetFileContents {
   std::vector<Vec3> nodes;
   std::vector<std::array<std::int64_t, 4>> tets;
+  std::vector<double> fill;  ///< TetMesh::fill, if the file has it
 };
 
 TetFileContents read_medit(const MeshSource& source);

@@ -60,6 +60,7 @@ class VtuReader {
     const std::vector<double> types = array(cells, "types");
     if (types.size() != number(piece, "NumberOfCells")) throw cut_off();
     add_vtk_cells(source_, array(cells, "connectivity"), offsets, types, contents);
+    if (contents.tets.size() == types.size()) contents.fill = fill();
     return contents;
   }
 
@@ -101,6 +102,14 @@ class VtuReader {
     const std::size_t begin = head.find("<" + name), end = head.find("</" + name, begin);
     if (begin == std::string_view::npos || end == std::string_view::npos) throw cut_off();
     return head.substr(begin, end - begin);
+  }
+
+  /// How full the cells are, as embedded meshes are written; empty if the file does not say.
+  std::vector<double> fill() const {
+    const std::string_view head = source_.bytes.substr(0, appended_at_);
+    if (head.find("<CellData") == std::string_view::npos) return {};
+    const std::string_view data = section("CellData");
+    return data.find(" Name=\"fill\"") == std::string_view::npos ? std::vector<double>{} : array(data, "fill");
   }
 
   /// The array of a name in a section; the first one for "".

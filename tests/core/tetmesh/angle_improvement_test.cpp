@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
 #include "core/mesh/mesh_repair.h"
 #include "core/tetmesh/tetrahedralize.h"
 #include "tests/support/bcc_bar.h"
@@ -215,6 +216,14 @@ TEST(ImproveAngles, TakesAnEmptyMesh) {
   TetMesh mesh;
   const AngleImprovement done = improve_angles(mesh, nullptr, {}, Threads(1));
   EXPECT_EQ(done.moved_nodes + done.slid_nodes + done.removed_edges + done.removed_faces, 0);
+}
+
+TEST(ImproveAngles, RefusesWholeLatticeCells) {
+  TetMesh mesh = fill(test::make_sphere(1, 8, Vec3::Zero()), {.edge = 0.4});
+  mesh.fill.assign(mesh.tets.size(), 0.5);
+  EXPECT_THROW(improve_angles(mesh, nullptr, {}, Threads(1)), Error);
+  EXPECT_THROW(fill(test::make_sphere(1, 8, Vec3::Zero()), {.edge = 0.4, .mode = TetMode::Embedded, .optimize = true}),
+               Error);
 }
 
 }  // namespace

@@ -153,7 +153,13 @@ TEST(EncodeTetMesh, VtuHoldsFillsAsCellData) {
   EXPECT_EQ(fill, mesh.fill);
   TetMesh corner = unit_corner();
   corner.fill = {0.5};
-  EXPECT_EQ(decode_tet_mesh("a.vtu", text_of(encode_tet_mesh(corner, ".vtu")), ".vtu", {}).tets, corner.tets);
+  const TetMesh read = decode_tet_mesh("a.vtu", text_of(encode_tet_mesh(corner, ".vtu")), ".vtu", {});
+  EXPECT_EQ(read.tets, corner.tets);
+  EXPECT_EQ(read.fill, corner.fill);
+  for (const double wrong : {0.0, -0.5, 1.5}) {
+    corner.fill = {wrong};
+    EXPECT_THROW(decode_tet_mesh("a.vtu", text_of(encode_tet_mesh(corner, ".vtu")), ".vtu", {}), Error) << wrong;
+  }
 }
 
 TEST(EncodeTetMesh, MeditListsNodesBoundaryAndElements) {
