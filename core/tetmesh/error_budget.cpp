@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "core/mesh/mesh_topology.h"
 #include "core/tetmesh/boundary_fit.h"
@@ -45,21 +46,13 @@ constexpr int kPatience = 12, kOpenPatience = 2;
 /// Pieces of at most this share of the elements are loose.
 constexpr double kLooseShare = 0.02;
 
-/// So often the error is lowered for one refinement.
-constexpr int kErrorSteps = 16;
-
-/// So many fillings a count may take, and so many of them once it is met, of which the one with the least distance is
-/// kept.
-constexpr int kCountRounds = 20, kMendingRounds = 3;
-
-/// Of eight new cells one takes the place of the leaf that was split.
-constexpr double kNewLeaves = 0.875;
-
-/// Of the tetrahedra that are missing, so many are asked for at once.
-constexpr double kStepShare = 0.6;
-
 /// The error falls with the number of tetrahedra to about this power; met on smooth and sharp bodies alike.
 constexpr double kErrorOverCount = 0.75;
+
+/// So many errors are tried for a count. A filling that has it ends where no gap is wider than so many errors: what
+/// comes after mends single places, and may add and spoil others.
+constexpr int kCountSteps = 10;
+constexpr double kNearlyKept = 1.3;
 
 /// How near to the wanted number is near enough.
 constexpr double kCountTolerance = 0.05;
@@ -83,10 +76,9 @@ double area_of(const SurfaceMesh& surface) {
   return area;
 }
 
-double base_edge_of(const SurfaceMesh& surface, const ErrorBudgetParams& params) {
-  if (params.base_edge > 0) return params.base_edge;
-  if (params.error > 0) return kBaseEdge * params.error;
-  return std::sqrt(kTetsPerSquare * area_of(surface) / (kBaseShare * params.tets));
+/// The error at which a smooth surface takes about so many tetrahedra.
+double guess_error(const SurfaceMesh& surface, double tets) {
+  return std::sqrt(kTetsPerSquare * area_of(surface) / (kBaseShare * tets)) / kBaseEdge;
 }
 
 class Filling {
@@ -95,7 +87,7 @@ class Filling {
       : surface_(surface),
         params_(params),
         threads_(threads),
-        base_edge_(base_edge_of(surface, params)),
+        base_edge_(params.base_edge > 0 ? params.base_edge : kBaseEdge * params.error),
         error_(params.error > 0 ? params.error : base_edge_ / kBaseEdge),
         frame_{used_bounds(surface).center(), std::ldexp(base_edge_, -params.finer)},
         octree_(frame_, used_bounds(surface), params.finer + params.coarser),
@@ -108,7 +100,6 @@ class Filling {
   }
 
   GradedFilling run() {
-    if (params_.tets > 0) return run_to_count();
     GradedFilling filling;
     const int rounds = params_.error > 0 ? kErrorRounds : 1;
     for (int round = 0; round < rounds; ++round) {
@@ -116,15 +107,17 @@ class Filling {
       std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
       add_loose_pieces(filling.stuffed, gaps);
       const bool is_certain = gaps.empty();
-      if (is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
+      if (is_certain) gaps = find_gaps(filling.stuffed);
       filling.is_kept = gaps.empty();
       const double margin = round < kSingleRounds ? 0.0 : 0.5;
-      std::erase_if(gaps, [&](const BoundaryGap& gap) { return is_in_hole(gap); });
+      leave_out_holes(gaps);
+      if (has_count(filling) && widest(gaps) < kNearlyKept * error_) break;
       if (!gaps.empty() && is_stuck(gaps, round)) break;
-      if (round + 1 == rounds || refine(filling.stuffed, gaps, 1e300, margin)) continue;
+      if (round + 1 == rounds || refine(filling.stuffed, gaps, margin)) continue;
       // Samples that no size reaches hide what lies between others.
-      if (!is_certain) gaps = find_gaps(filling.stuffed, kCertain * error_);
-      if (is_certain || !refine(filling.stuffed, gaps, 1e300)) break;
+      if (!is_certain) gaps = find_gaps(filling.stuffed);
+      leave_out_holes(gaps);
+      if (is_certain || !refine(filling.stuffed, gaps, 0.0)) break;
     }
     return filling;
   }
@@ -153,50 +146,9 @@ class Filling {
     return visible;
   }
 
-  /// Keeps to an error, then to smaller and smaller ones, until the count is reached: the last refinement takes the
-  /// worst places, as many as the count allows. Where that was too far, again from the round before with less.
-  GradedFilling run_to_count() {
-    GradedFilling best;
-    double best_gap = 1e300, best_miss = 1e300, before = 0, granted = 0, tets_per_leaf = kTetsPerSquare / 2;
-    GradedOctree last = octree_;
-    std::vector<BoundaryGap> gaps;
-    int mended = 0;
-    for (int round = 0, grown = 0; round < kCountRounds && mended < kMendingRounds; ++round) {
-      GradedFilling filling = fill();
-      const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
-      if (granted > 0 && count > before) tets_per_leaf *= std::clamp((count - before) / granted, 0.25, 4.0);
-      const double miss = std::abs(count / params_.tets - 1);
-      const bool too_many = count > (1 + kCountTolerance) * params_.tets;
-      if (too_many && best_miss < kCountTolerance) ++mended;
-      if (!too_many || before == 0) gaps = fit(filling.stuffed, grown++);
-      double gap = 1e300;
-      if (miss < kCountTolerance) {
-        gaps = find_gaps(filling.stuffed, kCertain * error_);
-        gap = widest(gaps);
-        ++mended;
-      }
-      if (best_miss < kCountTolerance ? gap < best_gap : miss < best_miss) {
-        best_gap = gap;
-        best_miss = miss;
-        best = filling;
-      }
-      if (too_many && before == 0) break;
-      if (too_many) {
-        octree_ = last;
-      } else {
-        last = octree_;
-        last_filling_ = std::move(filling);
-        before = count;
-      }
-      // In ever smaller steps: what a refinement spoils is mended by the next one.
-      const double missing = (1 + 0.8 * kCountTolerance) * params_.tets - before;
-      const double share = missing > 0.12 * params_.tets ? kStepShare : 1.0;
-      const auto cells = static_cast<double>(octree_.cells().size());
-      if (missing <= 0 || !refine_further(gaps, share * missing / tets_per_leaf)) break;
-      granted = tets_per_leaf * kNewLeaves * (static_cast<double>(octree_.cells().size()) - cells);
-    }
-    if (best_miss >= kCountTolerance && !best.stuffed.mesh.tets.empty()) fit(best.stuffed, kFirstRounds);
-    return best;
+  bool has_count(const GradedFilling& filling) const {
+    const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
+    return params_.tets > 0 && std::abs(count / params_.tets - 1) <= kCountTolerance;
   }
 
   /// Whether the widest gap has long been no narrower than before: no size mends it. A hole's cap is such a gap.
@@ -259,8 +211,13 @@ class Filling {
     return gaps;
   }
 
+  void leave_out_holes(std::vector<BoundaryGap>& gaps) const {
+    std::erase_if(gaps, [&](const BoundaryGap& gap) { return is_in_hole(gap); });
+  }
+
   /// All gaps, also between samples and inside faces.
-  std::vector<BoundaryGap> find_gaps(const StuffedMesh& stuffed, double limit) const {
+  std::vector<BoundaryGap> find_gaps(const StuffedMesh& stuffed) const {
+    const double limit = kCertain * error_;
     std::vector<Triangle> faces;
     for (const BoundaryFace& face : find_surface_faces(stuffed)) faces.push_back(face.nodes);
     const TriangleTree boundary(stuffed.mesh.nodes, faces);
@@ -272,18 +229,6 @@ class Filling {
     for (const Vec3& p : find_far_points(stuffed.mesh.nodes, faces, sampler_.tree(), limit, threads_))
       gaps.push_back({sampler_.tree().nearest(p).point, p, faces[at(boundary.nearest(p).triangle)], true});
     return gaps;
-  }
-
-  /// Refines the last filling at gaps, or, where there are none that can be refined, for smaller and smaller errors.
-  bool refine_further(std::vector<BoundaryGap>& gaps, double more_leaves) {
-    if (refine(last_filling_.stuffed, gaps, more_leaves)) return true;
-    const auto count = static_cast<double>(last_filling_.stuffed.mesh.tets.size());
-    for (int step = 0; step < kErrorSteps; ++step) {
-      gaps = find_gaps(last_filling_.stuffed, kCertain * error_);
-      if (refine(last_filling_.stuffed, gaps, more_leaves)) return true;
-      error_ *= std::clamp(std::pow(count / params_.tets, kErrorOverCount), 0.6, 0.95);
-    }
-    return false;
   }
 
   /// Sides of triangles that an open surface ends at, three bits a triangle; empty if it is closed.
@@ -317,13 +262,9 @@ class Filling {
     return false;
   }
 
-  /// Halves the largest leaves at each gap, the widest gaps first, until there are so many leaves more. False if there
-  /// is none that may be halved.
-  bool refine(const StuffedMesh& stuffed, std::vector<BoundaryGap>& gaps, double more_leaves, double margin = 0) {
-    std::erase_if(gaps, [&](const BoundaryGap& gap) { return is_in_hole(gap); });
-    const auto width = [](const BoundaryGap& gap) { return (gap.on_surface - gap.on_boundary).squaredNorm(); };
-    std::stable_sort(gaps.begin(), gaps.end(),
-                     [&](const BoundaryGap& a, const BoundaryGap& b) { return width(a) > width(b); });
+  /// Halves the largest leaves at each gap, and those within `margin` of their width. False if there is none that may
+  /// be halved.
+  bool refine(const StuffedMesh& stuffed, const std::vector<BoundaryGap>& gaps, double margin) {
     struct Wish {
       Vec3 point;
       std::int32_t level;
@@ -342,10 +283,7 @@ class Filling {
         if (most > 0 && octree_.level_at(p) == most) wishes.push_back({p, most - 1});
     }
     const std::size_t before = octree_.cells().size();
-    for (const Wish& wish : wishes) {
-      if (kNewLeaves * static_cast<double>(octree_.cells().size() - before) >= more_leaves) break;
-      octree_.refine(wish.point, wish.level, margin);
-    }
+    for (const Wish& wish : wishes) octree_.refine(wish.point, wish.level, margin);
     return octree_.cells().size() > before;
   }
 
@@ -361,28 +299,55 @@ class Filling {
   SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap
   std::vector<Vec3> samples_;
   FitMemory memory_;
-  GradedFilling last_filling_;
   std::vector<std::uint8_t> rims_;
   SurfaceDistance known_;  ///< of the filling before
 };
 
 }  // namespace
 
-GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
-  GradedFilling best = Filling(surface, params, threads).run();
-  const auto miss = [&](const GradedFilling& filling) {
-    return std::abs(static_cast<double>(filling.stuffed.mesh.tets.size()) / params.tets - 1);
-  };
-  // Flat sides ask for nothing, and creases for no more than the finest edge: then the base edge has to be another.
-  ErrorBudgetParams other = params;
-  constexpr int kBaseEdges = 4;
-  for (int i = 0; i < kBaseEdges && params.tets > 0 && miss(best) > kCountTolerance; ++i) {
-    const double share = static_cast<double>(best.stuffed.mesh.tets.size()) / params.tets;
-    other.base_edge = best.stuffed.mesh.lattice.spacing * std::clamp(0.95 * std::sqrt(share), 0.5, 2.0);
-    GradedFilling filling = Filling(surface, other, threads).run();
-    if (miss(filling) < miss(best)) best = std::move(filling);
+namespace {
+
+/// An error with the number of tetrahedra that it takes, as logarithms.
+struct Tried {
+  double error, count;
+};
+
+/// The next error to try for a count: between the nearest ones that gave too many and too few, or from one of them by
+/// the usual slope.
+double next_error(const std::optional<Tried>& few, const std::optional<Tried>& many, double wanted) {
+  if (!few || !many) {
+    const Tried& known = few ? *few : *many;
+    return known.error + kErrorOverCount * (known.count - wanted);
+  }
+  // Not too near to either, lest counts that jump stop the search.
+  const double share = std::clamp((wanted - few->count) / (many->count - few->count), 0.15, 0.85);
+  return few->error + share * (many->error - few->error);
+}
+
+GradedFilling fill_to_count(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
+  GradedFilling best;
+  double best_miss = 1e300, error = std::log(guess_error(surface, params.tets));
+  std::optional<Tried> few, many;
+  for (int step = 0; step < kCountSteps && best_miss > kCountTolerance; ++step) {
+    ErrorBudgetParams to_error = params;
+    to_error.error = std::exp(error);
+    GradedFilling filling = Filling(surface, to_error, threads).run();
+    const double count = std::max(1.0, static_cast<double>(filling.stuffed.mesh.tets.size()));
+    (count < params.tets ? few : many) = Tried{error, std::log(count)};
+    const double miss = std::abs(count / params.tets - 1);
+    if (miss < best_miss) {
+      best_miss = miss;
+      best = std::move(filling);
+    }
+    error = next_error(few, many, std::log(params.tets));
   }
   return best;
+}
+
+}  // namespace
+
+GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
+  return params.tets > 0 ? fill_to_count(surface, params, threads) : Filling(surface, params, threads).run();
 }
 
 }  // namespace softreel

@@ -26,10 +26,11 @@ struct GradedFilling {
   bool is_kept = false;      ///< the error: measured, not only hoped for
 };
 
-/// Fills, fits, measures, and refines where the boundary and the surface are furthest apart: with `error` until they
-/// are nowhere further apart or the finest edge is reached there, with `tets` until there are so many, within 5 %; with
-/// neither there is no refinement. The boundary is a manifold. Equal bits at any number of threads. Cost: about five
-/// times that of the last mesh.
+/// Fills, fits, measures, and refines where the boundary and the surface are further apart than `error`, until they are
+/// nowhere, or the finest edge is reached there, or nothing helps any more (a hole has no surface to keep to). With
+/// `tets` the error is searched that takes so many, within 5 %; with base_edge alone there is no refinement. The
+/// boundary is a manifold. Equal bits at any number of threads. Cost: about five times that of the last mesh, a search
+/// a few times that.
 GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads);
 
 }  // namespace softreel
