@@ -26,17 +26,47 @@ EdgePoint edge_point(std::array<double, 3> a, std::array<double, 3> b, double y)
   return {a[0] + t * (b[0] - a[0]), a[2] + t * (b[2] - a[2])};
 }
 
+using Corners = std::array<std::array<double, 3>, 3>;
+
+Corners in_lattice_units(const std::array<Vec3, 3>& triangle, const LatticeFrame& frame) {
+  Corners corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 p = (triangle[k] - frame.origin) * (2.0 / frame.spacing);
+    corners[k] = {p[0], p[1], p[2]};
+  }
+  return corners;
+}
+
+/// A triangle cut by the plane of a y that it reaches from below. Of the three edges one goes up through the plane
+/// (from y or below to above it) and one down.
+struct PlaneCut {
+  EdgePoint up{}, down{};
+
+  PlaneCut(const Corners& corners, std::int32_t y) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto &a = corners[k], &b = corners[(k + 1) % 3];
+      if (a[1] <= y && b[1] > y) up = edge_point(a, b, y);
+      if (a[1] > y && b[1] <= y) down = edge_point(a, b, y);
+    }
+  }
+
+  int sign() const { return up.z < down.z ? 1 : -1; }  // counter-clockwise seen from +x: the front looks that way
+  double z_begin() const { return std::min(up.z, down.z); }
+  double z_end() const { return std::max(up.z, down.z); }
+  double x_at(double z) const {
+    const double t = (z - down.z) / (up.z - down.z);
+    return down.x + t * (up.x - down.x);
+  }
+};
+
 }  // namespace
 
 RowCrossings::RowCrossings(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                            const LatticeFrame& frame) {
   for (const Triangle& triangle : triangles) {
-    std::array<Corner, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 p = (positions[static_cast<std::size_t>(triangle[k])] - frame.origin) * (2.0 / frame.spacing);
-      corners[k] = {p[0], p[1], p[2]};
-    }
-    cross_triangle(corners);
+    std::array<Vec3, 3> x;
+    for (std::size_t k = 0; k < 3; ++k) x[k] = positions[static_cast<std::size_t>(triangle[k])];
+    cross_triangle(in_lattice_units(x, frame));
   }
   std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
     if (a.z != b.z) return a.z < b.z;
@@ -51,19 +81,9 @@ RowCrossings::RowCrossings(const std::vector<Vec3>& positions, const std::vector
 void RowCrossings::cross_triangle(const std::array<Corner, 3>& corners) {
   const auto [low, high] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
   for (auto y = static_cast<std::int32_t>(std::ceil(low)); y < high; ++y) {
-    // Of the three edges one goes up through the plane (from y or below to above it) and one down.
-    EdgePoint up{}, down{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Corner &a = corners[k], &b = corners[(k + 1) % 3];
-      if (a[1] <= y && b[1] > y) up = edge_point(a, b, y);
-      if (a[1] > y && b[1] <= y) down = edge_point(a, b, y);
-    }
-    const int sign = up.z < down.z ? 1 : -1;  // counter-clockwise seen from +x: the front looks that way
-    const double z_end = std::max(up.z, down.z);
-    for (std::int32_t z = first_of_parity(std::min(up.z, down.z), y); z < z_end; z += 2) {
-      const double t = (z - down.z) / (up.z - down.z);
-      crossings_.push_back({z, y, down.x + t * (up.x - down.x), sign});
-    }
+    const PlaneCut cut(corners, y);
+    for (std::int32_t z = first_of_parity(cut.z_begin(), y); z < cut.z_end(); z += 2)
+      crossings_.push_back({z, y, cut.x_at(z), cut.sign()});
   }
 }
 
@@ -85,6 +105,35 @@ bool RowCrossings::overlaps() const {
     }
   }
   return false;
+}
+
+int winding_of_node(const TriangleTree& tree, const LatticeFrame& frame, const LatticeNode& node) {
+  if (tree.nodes().empty()) return 0;
+  constexpr double kMargin = 1e-6;  // lattice units; far above the round-off of a box
+  const double scale = 2.0 / frame.spacing;
+  int winding = 0;
+  std::array<Index, 64> open{0};  // halving: depth at most 32
+  for (std::size_t depth = 1; depth > 0;) {
+    const Index n = open[--depth];
+    const TriangleTree::Node& box = tree.nodes()[static_cast<std::size_t>(n)];
+    const Vec3 low = (box.min - frame.origin) * scale, high = (box.max - frame.origin) * scale;
+    if (low[0] > node[0] + kMargin || low[1] > node[1] + kMargin || high[1] < node[1] - kMargin ||
+        low[2] > node[2] + kMargin || high[2] < node[2] - kMargin)
+      continue;
+    if (!box.is_leaf()) {
+      open[depth++] = box.right;
+      open[depth++] = n + 1;
+      continue;
+    }
+    for (Index i = box.begin; i < box.end; ++i) {
+      const Corners corners = in_lattice_units(tree.corners()[static_cast<std::size_t>(i)], frame);
+      const auto [from, to] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
+      if (!(from <= node[1] && node[1] < to)) continue;
+      const PlaneCut cut(corners, node[1]);
+      if (cut.z_begin() <= node[2] && node[2] < cut.z_end() && cut.x_at(node[2]) <= node[0]) winding -= cut.sign();
+    }
+  }
+  return winding;
 }
 
 }  // namespace softreel

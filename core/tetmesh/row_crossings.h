@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/tetmesh/lattice_nodes.h"
+#include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
 
@@ -56,5 +57,9 @@ void RowCrossings::visit_inside(const Visit& visit) const {
     }
   }
 }
+
+/// RowCrossings::winding of one node, found in the tree of a closed surface: for nodes of many sizes, where most rows
+/// of the finest lattice hold none. Cost: the triangles that its row meets, and the boxes round them.
+int winding_of_node(const TriangleTree& tree, const LatticeFrame& frame, const LatticeNode& node);
 
 }  // namespace softreel

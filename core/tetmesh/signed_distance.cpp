@@ -17,6 +17,9 @@ constexpr double kHoleSlope = 8.0 * kBandVoxels;
 
 constexpr std::int64_t kGrain = 256;
 
+/// So many rows in each direction are looked at for overlaps.
+constexpr double kMostRows = 1024;
+
 /// A lattice node with its distance, which is signed once it is known; nearest is -1 beyond the band.
 using KnownNode = BandNode;
 
@@ -110,10 +113,15 @@ SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::
 DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                  const LatticeFrame& frame)
     : frame_(frame), tree_(positions, triangles) {
-  if (is_closed(positions, triangles))
-    crossings_.emplace(positions, triangles, frame);
-  else
+  if (!is_closed(positions, triangles)) {
     winding_.emplace(positions, triangles);
+    return;
+  }
+  LatticeFrame rows = frame;  // not all of the finest: there may be more of them than memory
+  Bounds box;
+  for (const Vec3& p : positions) box.add(p);
+  while (rows.spacing * kMostRows < box.diagonal()) rows.spacing *= 2;
+  overlaps_ = RowCrossings(positions, triangles, rows).overlaps();
 }
 
 SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, const std::vector<double>& reaches,
@@ -136,8 +144,8 @@ SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, const std::
           tree_.nearest(p, reaches[i] * reaches[i], [](Index, const Vec3&) { return true; });
       double distance = std::sqrt(found.squared_distance);
       bool inside = false;
-      if (crossings_) {
-        inside = crossings_->winding(list[i]) != 0;
+      if (!winding_) {
+        inside = winding_of_node(tree_, frame_, list[i]) != 0;
       } else {
         const double beyond = std::abs((*winding_)(p)) - 0.5;
         distance = std::min(distance, 0.5 * frame_.spacing * kHoleSlope * std::abs(beyond));

@@ -42,14 +42,14 @@ class DistanceSampler {
                          const Threads& threads) const;
 
   const TriangleTree& tree() const { return tree_; }
-  /// Whether the surface is closed and goes more than once round some place on the lattice's rows.
-  bool overlaps() const { return crossings_ && crossings_->overlaps(); }
+  /// Whether the surface is closed and goes more than once round some place, on rows of the lattice or on some of them.
+  bool overlaps() const { return overlaps_; }
 
  private:
   LatticeFrame frame_;
   TriangleTree tree_;
-  std::optional<RowCrossings> crossings_;  ///< of a closed surface
-  std::optional<WindingNumber> winding_;   ///< of an open one
+  bool overlaps_ = false;
+  std::optional<WindingNumber> winding_;  ///< of an open surface
 };
 
 }  // namespace softreel

@@ -58,6 +58,7 @@ TEST(RowCrossings, AgreeWithWindingNumbers) {
       for (int x = -17; x <= 17; ++x) {
         if (((x ^ y) & 1) != 0 || ((x ^ z) & 1) != 0) continue;
         const LatticeNode node{x, y, z};
+        EXPECT_EQ(winding_of_node(tree, frame, node), crossings.winding(node)) << x << ' ' << y << ' ' << z;
         const Vec3 p = lattice_position(frame, node);
         if (tree.nearest(p).squared_distance < 1e-20) continue;  // on the surface: either side is right
         EXPECT_EQ(crossings.winding(node), std::lround(winding(p))) << x << ' ' << y << ' ' << z;
