@@ -255,7 +255,7 @@ class Cover {
 
   Index find_element(const std::vector<Index>& elements, const CarriedPoint& point) const {
     const Vec3 place = (point.position - surface_.frame.origin) * (2.0 / surface_.frame.spacing);
-    if (!(place.cwiseAbs().maxCoeff() < kMaxLatticeCoordinate)) return -1;  // or not a number
+    if (!place.allFinite() || place.cwiseAbs().maxCoeff() >= kMaxLatticeCoordinate) return -1;
     const Index number = numbers_.find(cell_key(cell_at(place)));
     if (number < 0) return -1;
     const CoverCell& cell = cells_[at(number)];
