@@ -48,7 +48,7 @@ class PointGrid {
  public:
   PointGrid(const std::vector<Vec3>& points, const Vec3& origin, double cell) : origin_(origin), cell_(cell) {
     cells_of_points_.reserve(points.size());
-    for (const Vec3& p : points) cells_of_points_.push_back(cells_.insert(key(cell_of(p))).first);
+    for (const Vec3& p : points) cells_of_points_.push_back(p.allFinite() ? cells_.insert(key(cell_of(p))).first : -1);
   }
 
   Index cell_of_point(std::size_t point) const { return cells_of_points_[point]; }
@@ -163,6 +163,11 @@ class Embedder {
         boundary_(make_boundary(mesh)) {}
 
   void embed(std::size_t point, Index& element, Weights& weights) const {
+    if (!points_[point].allFinite()) {
+      element = 0;
+      weights = {1, 0, 0, 0};
+      return;
+    }
     if (!mesh_.carriers.empty() && mesh_.carriers[point] >= 0) {
       element = mesh_.carriers[point];
       weights = barycentric(corners_of(mesh_, element), points_[point]);

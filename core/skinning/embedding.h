@@ -20,6 +20,7 @@ struct Embedding {
 /// Embeds surface vertices. A point outside all tetrahedra goes to the nearest element, found along the part it
 /// belongs to, never across a gap: candidates are the elements at the boundary whose outward side faces the point
 /// along `normals` (unit, per point, pointing out of the surface). Deterministic; ties go to the lowest element.
+/// A point that is no number, as files have them beside their faces, goes with the first node of the first element.
 /// If the mesh knows its carriers, the points are the vertices of the surface it was made from, and go to those.
 Embedding embed_points(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const TetMesh& mesh,
                        const Threads& threads);

@@ -1,5 +1,6 @@
 #include "core/skinning/skinning.h"
 
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -98,6 +99,17 @@ TEST(EmbedPoints, StaysOnItsSideOfAGap) {
     for (const Index node : mesh.tets[static_cast<std::size_t>(embedding.elements[i])])
       center += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
     EXPECT_LT(center[2] * normals[i][2], 0);
+  }
+}
+
+TEST(EmbedPoints, TakesPointsThatAreNoNumbers) {
+  const TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}, {}};
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  const std::vector<Vec3> points{{0.1, 0.1, 0.1}, {nan, 0, 0}, {0, infinite, 0}};
+  const Embedding embedding = embed_points(points, {3, Vec3::UnitY()}, mesh, Threads(1));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(embedding.elements[i], 0) << i;
+    EXPECT_NEAR(embedding.weights[i][0], i == 0 ? 0.7 : 1.0, 1e-15) << i;
   }
 }
 
