@@ -8,7 +8,7 @@
 
 namespace softreel {
 
-/// What graded filling may choose from. Exactly one of error and tets is set, or base_edge alone.
+/// What graded filling may choose from. Exactly one of error, tets and base_edge is set by the caller.
 struct ErrorBudgetParams {
   double error = 0;            ///< wanted two-way distance to the surface, m
   double tets = 0;             ///< wanted number of tetrahedra

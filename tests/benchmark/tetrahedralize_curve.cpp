@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/readers/mesh_import.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 #include "core/tetmesh/tet_quality.h"
-#include "core/tetmesh/tetrahedralize.h"
 #include "tests/support/peak_memory.h"
 
 namespace softreel {

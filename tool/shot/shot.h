@@ -12,7 +12,7 @@
 #include "core/constraints/selection.h"
 #include "core/dynamics/simulator.h"
 #include "core/elasticity/material.h"
-#include "core/tetmesh/tetrahedralize.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 #include "render/image/image_io.h"
 #include "render/pathtrace/path_tracer.h"
 #include "render/scene/scene.h"

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
-#include "core/tetmesh/tetrahedralize.h"
 #include "core/tetmesh/triangle_tree.h"
 #include "tool/stages/at_field.h"
 #include "tool/stages/bytes.h"

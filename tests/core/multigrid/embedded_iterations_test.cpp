@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/multigrid/multigrid.h"
-#include "core/tetmesh/tetrahedralize.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 #include "tests/support/elastic_box.h"
 #include "tests/support/surfaces.h"
 #include "tests/support/thin_surfaces.h"

@@ -8,7 +8,7 @@
 
 #include "core/multigrid/lattice_hierarchy.h"
 #include "core/multigrid/multigrid.h"
-#include "core/tetmesh/tetrahedralize.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 #include "tests/support/bcc_bar.h"
 #include "tests/support/elastic_box.h"
 #include "tests/support/surfaces.h"

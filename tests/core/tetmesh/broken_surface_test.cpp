@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/mesh/mesh_repair.h"
-#include "core/tetmesh/tetrahedralize.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 #include "tests/support/broken_surfaces.h"
 #include "tests/support/tet_checks.h"
 

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 #include "core/tetmesh/graded_stuffing.h"
-#include "core/tetmesh/tetrahedralize.h"
 #include "tests/support/surfaces.h"
 #include "tests/support/tet_checks.h"
 #include "tests/support/tiny_mesh_reader.h"
@@ -77,8 +77,7 @@ TEST(FillToError, KeepsToItsBudgetOnSmoothSharpAndThinSurfaces) {
         Case{"cone", cone(), 2}, Case{"overlapping balls", overlapping_balls(), 2}, Case{"dumbbell", dumbbell(), 2}}) {
     SCOPED_TRACE(name);
     std::vector<std::string> lines;
-    const double share = std::string(name) == "box" ? 0.008 : 0.006;
-    const double error = share * used_bounds(surface).diagonal();
+    const double error = 0.006 * used_bounds(surface).diagonal();
     const TetMesh mesh = fill(surface, error, lines);
     EXPECT_LE(measure_deviation(surface, mesh, Threads(1)).two_way(), error);
     expect_good_graded(mesh);
@@ -130,8 +129,8 @@ TetMesh fill_graded(const SurfaceMesh& surface, double edge, std::int64_t tets, 
 }
 
 TEST(FillToCount, MeetsItAndIsNearerToTheSurfaceThanALattice) {
-  for (const SurfaceMesh& surface : {spiked_ball(), cone()})
-    for (const std::int64_t tets : {20000}) {
+  for (const SurfaceMesh& surface : {spiked_ball(), cone(), dumbbell()})
+    for (const std::int64_t tets : {6000, 20000}) {
       const TetMesh graded = fill_graded(surface, 0, tets);
       EXPECT_NEAR(static_cast<double>(graded.tets.size()) / static_cast<double>(tets), 1.0, 0.05);
       expect_good_graded(graded);

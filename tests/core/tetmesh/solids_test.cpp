@@ -1,4 +1,4 @@
-#include "core/tetmesh/solids.h"
+#include "core/tetmesh/filling/solids.h"
 
 #include <gtest/gtest.h>
 

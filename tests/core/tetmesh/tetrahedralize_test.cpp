@@ -1,4 +1,4 @@
-#include "core/tetmesh/tetrahedralize.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 
 #include <filesystem>
 #include <numbers>

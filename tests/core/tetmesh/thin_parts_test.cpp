@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/skinning/embedding.h"
-#include "core/tetmesh/tetrahedralize.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 #include "tests/support/surfaces.h"
 #include "tests/support/tet_checks.h"
 

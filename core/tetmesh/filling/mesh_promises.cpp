@@ -1,4 +1,4 @@
-#include "core/tetmesh/mesh_promises.h"
+#include "core/tetmesh/filling/mesh_promises.h"
 
 #include <algorithm>
 

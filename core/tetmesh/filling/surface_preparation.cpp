@@ -1,4 +1,4 @@
-#include "core/tetmesh/surface_preparation.h"
+#include "core/tetmesh/filling/surface_preparation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/tetmesh/tetrahedralize.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +10,12 @@
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
 #include "core/tetmesh/error_budget.h"
+#include "core/tetmesh/filling/mesh_promises.h"
+#include "core/tetmesh/filling/solids.h"
+#include "core/tetmesh/filling/surface_preparation.h"
 #include "core/tetmesh/graded_stuffing.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
 #include "core/tetmesh/mesh_pieces.h"
-#include "core/tetmesh/mesh_promises.h"
-#include "core/tetmesh/solids.h"
-#include "core/tetmesh/surface_preparation.h"
 #include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/thin_parts.h"
 
