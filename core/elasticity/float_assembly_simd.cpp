@@ -15,7 +15,6 @@ constexpr std::int64_t kRowGrain = 128;
 /// the lanes are those of one row (GNU vectors, for their shuffles, which std::experimental::simd does not have).
 typedef float Row __attribute__((vector_size(16)));
 typedef float UnalignedRow __attribute__((vector_size(16), aligned(4), may_alias));
-typedef int Order __attribute__((vector_size(16)));
 
 using Rows = std::array<Row, 3>;
 
@@ -43,16 +42,16 @@ struct Products {
 }
 
 [[gnu::always_inline]] inline Rows transposed(const Rows& m) {
-  const Row low = __builtin_shuffle(m[0], m[1], Order{0, 4, 1, 5}),
-            high = __builtin_shuffle(m[0], m[1], Order{2, 6, 3, 7});
-  return {__builtin_shuffle(low, m[2], Order{0, 1, 4, 4}), __builtin_shuffle(low, m[2], Order{2, 3, 5, 5}),
-          __builtin_shuffle(high, m[2], Order{0, 1, 6, 6})};
+  const Row low = __builtin_shufflevector(m[0], m[1], 0, 4, 1, 5),
+            high = __builtin_shufflevector(m[0], m[1], 2, 6, 3, 7);
+  return {__builtin_shufflevector(low, m[2], 0, 1, 4, 4), __builtin_shufflevector(low, m[2], 2, 3, 5, 5),
+          __builtin_shufflevector(high, m[2], 0, 1, 6, 6)};
 }
 
 /// The trace in all lanes.
 [[gnu::always_inline]] inline Row trace(const Rows& m) {
-  return (__builtin_shuffle(m[0], Order{0, 0, 0, 0}) + __builtin_shuffle(m[1], Order{1, 1, 1, 1})) +
-         __builtin_shuffle(m[2], Order{2, 2, 2, 2});
+  return (__builtin_shufflevector(m[0], m[0], 0, 0, 0, 0) + __builtin_shufflevector(m[1], m[1], 1, 1, 1, 1)) +
+         __builtin_shufflevector(m[2], m[2], 2, 2, 2, 2);
 }
 
 /// Stores a + b + diagonal I by rows: nine scalars in three overlapping stores that stay inside of the block.
@@ -61,7 +60,7 @@ struct Products {
             row2 = a[2] + b[2] + diagonal * Row{0, 0, 1, 0};
   *reinterpret_cast<UnalignedRow*>(block) = row0;
   *reinterpret_cast<UnalignedRow*>(block + 3) = row1;
-  *reinterpret_cast<UnalignedRow*>(block + 5) = __builtin_shuffle(row1, row2, Order{2, 4, 5, 6});
+  *reinterpret_cast<UnalignedRow*>(block + 5) = __builtin_shufflevector(row1, row2, 2, 4, 5, 6);
 }
 
 /// K_ij = L + P^T + tr(P) I and its transpose K_ji, by columns: the rows of K_ij are the columns of K_ji.

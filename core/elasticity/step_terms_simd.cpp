@@ -21,15 +21,14 @@ using Symmetric = detail::Symmetric3<Lanes>;
 /// Lanes of one element's (x y z r), for the shuffles that std::experimental::simd does not have.
 typedef double Four __attribute__((vector_size(32)));
 typedef float FourFloats __attribute__((vector_size(16)));
-typedef long long Order __attribute__((vector_size(32)));
 
 /// Four quantities of four elements each, as four elements' four quantities.
 [[gnu::always_inline]] inline std::array<Four, 4> transposed(const Four& a, const Four& b, const Four& c,
                                                              const Four& d) {
-  const Four even_ab = __builtin_shuffle(a, b, Order{0, 4, 2, 6}), odd_ab = __builtin_shuffle(a, b, Order{1, 5, 3, 7}),
-             even_cd = __builtin_shuffle(c, d, Order{0, 4, 2, 6}), odd_cd = __builtin_shuffle(c, d, Order{1, 5, 3, 7});
-  return {__builtin_shuffle(even_ab, even_cd, Order{0, 1, 4, 5}), __builtin_shuffle(odd_ab, odd_cd, Order{0, 1, 4, 5}),
-          __builtin_shuffle(even_ab, even_cd, Order{2, 3, 6, 7}), __builtin_shuffle(odd_ab, odd_cd, Order{2, 3, 6, 7})};
+  const Four even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+             even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return {__builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5), __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5),
+          __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7), __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7)};
 }
 
 [[gnu::always_inline]] inline Four as_four(const Lanes& lanes) {
