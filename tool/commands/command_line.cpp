@@ -101,6 +101,7 @@ struct Parsed {
   CleanOptions clean;
   InspectOptions inspect;
   TetrahedralizeOptions tetrahedralize;
+  BenchCommandOptions bench;
   std::string field;
 };
 
@@ -217,6 +218,21 @@ void add_mesh_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   });
 }
 
+void add_bench_command(CLI::App& app, Parsed& parsed, Runner& run) {
+  CLI::App* bench =
+      app.add_subcommand("bench", "measure run time against error beside rivals, and stability; a report");
+  BenchCommandOptions& options = parsed.bench;
+  bench->add_option("names", options.names, "sub-benchmarks [all; see --list]")->option_text("NAME ...");
+  bench->add_flag("--quick", options.quick, "smaller meshes, fewer seeds: within 3 minutes instead of 30");
+  bench->add_flag("--list", options.list, "print the sub-benchmarks and measure nothing");
+  bench->add_option("--threads", options.threads, "threads of what is measured; 1: processor time [1]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1024));
+  bench->add_option("--output", options.output, "folder for tables, plots and index.html [out/bench]")
+      ->option_text("DIR");
+  bench->callback([&] { run = [&parsed] { return run_bench(parsed.bench); }; });
+}
+
 /// What is wrong with the arguments, and where to read on. A first word that is no subcommand gets the nearest one.
 std::string usage_message(const CLI::App& app, const CLI::ParseError& mistake, int argc, char** argv) {
   const std::string word = argc > 1 ? argv[1] : "";
@@ -246,6 +262,7 @@ int run_command_line(int argc, char** argv) {
   add_making_commands(app, parsed, run);
   add_looking_commands(app, parsed, run);
   add_mesh_commands(app, parsed, run);
+  add_bench_command(app, parsed, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

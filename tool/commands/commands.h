@@ -90,4 +90,14 @@ struct TetrahedralizeOptions {
 /// written in another format.
 int run_tetrahedralize(const TetrahedralizeOptions& options);
 
+struct BenchCommandOptions {
+  std::vector<std::string> names;  ///< of sub-benchmarks; empty: all
+  std::string output = "out/bench";
+  int threads = 1;
+  bool quick = false, list = false;
+};
+
+/// Starts softreel_bench, which rivals' libraries are linked to and this program is not; returns its exit status.
+int run_bench(const BenchCommandOptions& options);
+
 }  // namespace softreel

@@ -1,0 +1,13 @@
+# softreel_bench, started by `softreel bench`; included by tests/benchmark/CMakeLists.txt. Each sub-benchmark adds its
+# sources to bench_parts, which bench_tests link too.
+add_library(bench_parts STATIC
+  bench.cpp
+  report/machine.cpp report/plot.cpp report/report.cpp report/table.cpp
+  steppers/softreel_stepper.cpp)
+target_link_libraries(bench_parts PUBLIC bar_problem softreel_core fmt::fmt PRIVATE softreel_warnings)
+target_include_directories(bench_parts PUBLIC "${PROJECT_SOURCE_DIR}")
+target_compile_definitions(bench_parts PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+softreel_precompile(bench_parts ${SOFTREEL_COMMON_HEADERS})
+
+add_executable(softreel_bench bench_main.cpp)
+target_link_libraries(softreel_bench PRIVATE bench_parts softreel_warnings)

@@ -1,0 +1,31 @@
+#include "tests/benchmark/bench.h"
+
+#include <ctime>
+
+namespace softreel::bench {
+namespace {
+
+double seconds_of(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace
+
+std::span<const Benchmark> benchmarks() {
+  static const std::vector<Benchmark> all;
+  return all;
+}
+
+double thread_seconds() {
+  return seconds_of(CLOCK_THREAD_CPUTIME_ID);
+}
+double process_seconds() {
+  return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+}
+double wall_seconds() {
+  return seconds_of(CLOCK_MONOTONIC);
+}
+
+}  // namespace softreel::bench
