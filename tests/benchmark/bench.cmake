@@ -3,6 +3,9 @@
 add_library(bench_parts STATIC
   bench.cpp
   report/machine.cpp report/plot.cpp report/report.cpp report/table.cpp
+  precision/bar_models.cpp precision/bar_motions.cpp precision/bar_statics.cpp precision/beam_theory.cpp
+  precision/calculix.cpp precision/creature.cpp precision/methods.cpp precision/motion.cpp precision/moving_bars.cpp
+  precision/precision.cpp precision/static_answer.cpp precision/work_precision.cpp
   steppers/softreel_stepper.cpp)
 target_link_libraries(bench_parts PUBLIC bar_problem softreel_core fmt::fmt PRIVATE softreel_warnings)
 target_include_directories(bench_parts PUBLIC "${PROJECT_SOURCE_DIR}")

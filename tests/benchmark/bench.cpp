@@ -2,6 +2,8 @@
 
 #include <ctime>
 
+#include "tests/benchmark/precision/precision.h"
+
 namespace softreel::bench {
 namespace {
 
@@ -14,7 +16,9 @@ double seconds_of(clockid_t clock) {
 }  // namespace
 
 std::span<const Benchmark> benchmarks() {
-  static const std::vector<Benchmark> all;
+  static const std::vector<Benchmark> all{
+      {"precision", "Error against processor time, beside rivals and theory", run_precision},
+  };
   return all;
 }
 
