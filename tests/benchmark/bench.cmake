@@ -3,8 +3,9 @@
 add_library(bench_parts STATIC
   bench.cpp
   report/machine.cpp report/plot.cpp report/report.cpp report/table.cpp
-  steppers/softreel_stepper.cpp)
-target_link_libraries(bench_parts PUBLIC bar_problem softreel_core fmt::fmt PRIVATE softreel_warnings)
+  steppers/direct_stepper.cpp steppers/projective_stepper.cpp steppers/rival_body.cpp steppers/softreel_stepper.cpp
+  steppers/xpbd_stepper.cpp)
+target_link_libraries(bench_parts PUBLIC bar_problem rivals softreel_core fmt::fmt PRIVATE softreel_warnings)
 target_include_directories(bench_parts PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(bench_parts PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 softreel_precompile(bench_parts ${SOFTREEL_COMMON_HEADERS})
