@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "tests/benchmark/precision/static_answer.h"
+#include "tests/benchmark/rivals/rival.h"
 
 namespace softreel::bench {
 namespace {
@@ -37,7 +38,7 @@ void add_direct(std::vector<Method>& methods, DirectSolver solver, const std::st
     if (std::isfinite(linear_tolerance)) params.tolerance = linear_tolerance;
     return make_direct(model, params, solver);
   };
-  if (has_direct(solver)) methods.push_back(std::move(method));
+  if (solver != DirectSolver::Cholmod || rivals::has_cholmod()) methods.push_back(std::move(method));
 }
 
 }  // namespace
@@ -102,13 +103,23 @@ std::vector<Method> rival_methods() {
              "the same by Eigen's conjugate gradients, preconditioned by incomplete Cholesky, from the step's first "
              "velocity",
              1e-3);
-  Method xpbd{"XPBD", "XPBD", false,
-              "small steps (Macklin et al. 2019): one iteration in each of 8, 16, 32 ... substeps a frame", {kNone}, 8,
-              [](const BodyModel& model, double, const Threads&) { return make_xpbd(model, {1, 1}); }};
+  Method xpbd{"XPBD",
+              "XPBD",
+              false,
+              "small steps (Macklin et al. 2019): one iteration in each of 8, 16, 32 ... substeps a frame",
+              {kNone},
+              8,
+              [](const BodyModel& model, double, const Threads&) {
+                return make_xpbd(model, {1, 1});
+              }};
   methods.push_back(std::move(xpbd));
   for (const int iterations : {10, 50}) {
-    Method projective{fmt::format("projective dynamics, {} iterations", iterations), "projective dynamics", false,
-                      "Bouaziz et al. 2014 with one prefactored matrix; 10 iterations a step are usual", {kNone}, 1,
+    Method projective{fmt::format("projective dynamics, {} iterations", iterations),
+                      "projective dynamics",
+                      false,
+                      "Bouaziz et al. 2014 with one prefactored matrix; 10 iterations a step are usual",
+                      {kNone},
+                      1,
                       [iterations](const BodyModel& model, double, const Threads&) {
                         return make_projective_dynamics(model, {iterations});
                       }};

@@ -33,7 +33,27 @@ class Cholmod : public Rival {
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> solver_;
 };
 
+class CholmodFactor : public Factor {
+ public:
+  explicit CholmodFactor(const Eigen::SparseMatrix<double>& matrix) : solver_(matrix) {
+    if (solver_.info() != Eigen::Success) throw std::runtime_error("cholmod: the factorisation failed");
+  }
+  Eigen::MatrixX3d solve(const Eigen::MatrixX3d& right_sides) const override { return solver_.solve(right_sides); }
+
+ private:
+  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> solver_;
+};
+
 }  // namespace
+
+bool has_cholmod() {
+  return true;
+}
+
+std::unique_ptr<Factor> make_cholmod_factor(const Eigen::SparseMatrix<double>& matrix) {
+  set_blas_threads(1);
+  return std::make_unique<CholmodFactor>(matrix);
+}
 
 std::unique_ptr<Rival> make_cholmod(const ScalarSystem& system, int threads) {
   set_blas_threads(threads);

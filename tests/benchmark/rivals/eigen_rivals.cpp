@@ -52,7 +52,22 @@ class EigenCg : public Rival {
   Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper, Preconditioner> solver_;
 };
 
+class EigenFactor : public Factor {
+ public:
+  explicit EigenFactor(const Matrix& matrix) : solver_(matrix) {
+    if (solver_.info() != Eigen::Success) throw std::runtime_error("eigen_ldlt: the factorisation failed");
+  }
+  Eigen::MatrixX3d solve(const Eigen::MatrixX3d& right_sides) const override { return solver_.solve(right_sides); }
+
+ private:
+  Eigen::SimplicialLDLT<Matrix> solver_;
+};
+
 }  // namespace
+
+std::unique_ptr<Factor> make_eigen_factor(const Eigen::SparseMatrix<double>& matrix) {
+  return std::make_unique<EigenFactor>(matrix);
+}
 
 std::unique_ptr<Rival> make_eigen_ldlt(const ScalarSystem& system) {
   return std::make_unique<EigenLdlt>(system);

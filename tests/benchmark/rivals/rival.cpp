@@ -1,5 +1,7 @@
 #include "tests/benchmark/rivals/rival.h"
 
+#include <algorithm>
+
 namespace softreel::rivals {
 
 ScalarSystem make_scalar_system(const benchmark_support::LinearSystem& system, std::span<const Vec3> rest_positions) {
@@ -29,6 +31,22 @@ ScalarSystem make_scalar_system(const benchmark_support::LinearSystem& system, s
   scalar.matrix.resize(unknowns, unknowns);
   scalar.matrix.setFromTriplets(entries.begin(), entries.end());
   return scalar;
+}
+
+void take_values(const benchmark_support::LinearSystem& system, ScalarSystem& scalar) {
+  const BlockPattern& pattern = system.matrix.pattern;
+  double* value = scalar.matrix.valuePtr();
+  for (std::size_t k = 0; k < scalar.mesh_nodes.size(); ++k) {
+    const auto i = static_cast<std::size_t>(scalar.mesh_nodes[k]);
+    scalar.load.segment<3>(3 * static_cast<Eigen::Index>(k)) = system.load[i];
+    // The matrix is symmetric: the columns of node i are its rows.
+    for (int c = 0; c < 3; ++c)
+      for (std::int64_t b = pattern.row_offsets[i]; b < pattern.row_offsets[i + 1]; ++b) {
+        const Index column = pattern.column_indices[static_cast<std::size_t>(b)];
+        if (system.pinned[static_cast<std::size_t>(column)] == 0)
+          value = std::copy_n(system.matrix.block(b) + 3 * c, 3, value);
+      }
+  }
 }
 
 }  // namespace softreel::rivals

@@ -22,6 +22,9 @@ struct ScalarSystem {
 
 ScalarSystem make_scalar_system(const benchmark_support::LinearSystem& system, std::span<const Vec3> rest_positions);
 
+/// New values and load of a system with the same pattern and the same pinned nodes as `scalar` was made from.
+void take_values(const benchmark_support::LinearSystem& system, ScalarSystem& scalar);
+
 /// One solver on one system. Everything that new values on the same pattern leave as it is, is made in the constructor.
 class Rival {
  public:
@@ -39,6 +42,19 @@ std::unique_ptr<Rival> make_eigen_cg_diagonal(const ScalarSystem& system);
 std::unique_ptr<Rival> make_eigen_cg_ic(const ScalarSystem& system);
 /// Null, with a line on stderr, where the library was not found when the benchmark was built.
 std::unique_ptr<Rival> make_cholmod(const ScalarSystem& system, int threads);
+bool has_cholmod();
 std::unique_ptr<Rival> make_petsc_gamg(const ScalarSystem& system);
+
+/// A Cholesky factorisation that is made once and solves for three right sides at once.
+class Factor {
+ public:
+  virtual ~Factor() = default;
+  virtual Eigen::MatrixX3d solve(const Eigen::MatrixX3d& right_sides) const = 0;
+};
+
+/// Of a symmetric positive definite matrix, both halves given, on one thread. Throws std::runtime_error if it fails.
+std::unique_ptr<Factor> make_eigen_factor(const Eigen::SparseMatrix<double>& matrix);
+/// Null where the library is missing.
+std::unique_ptr<Factor> make_cholmod_factor(const Eigen::SparseMatrix<double>& matrix);
 
 }  // namespace softreel::rivals

@@ -1,0 +1,150 @@
+// softreel's implicit Euler step (core/dynamics/step.cpp) with the linear system solved by other people's libraries.
+//
+// (M + h Ma + sum h (h + b) K_e) d = h f - (h Ma + h (h + b) K) v', d the change of velocity from v', which is the
+// velocity at the start or, of held nodes, that of their way. They are taken out of the system.
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "core/elasticity/assembly.h"
+#include "core/elasticity/step_terms.h"
+#include "tests/benchmark/rivals/rival.h"
+#include "tests/benchmark/steppers/rival_body.h"
+#include "tests/benchmark/steppers/stepper.h"
+
+namespace softreel::bench {
+namespace {
+
+using rivals::Rival;
+using rivals::ScalarSystem;
+
+const char* name_of(DirectSolver solver) {
+  switch (solver) {
+    case DirectSolver::EigenLdlt:
+      return "Eigen LDLT";
+    case DirectSolver::Cholmod:
+      return "CHOLMOD";
+    case DirectSolver::EigenCgIncompleteCholesky:
+      break;
+  }
+  return "Eigen CG with incomplete Cholesky";
+}
+
+std::unique_ptr<Rival> make_solver(DirectSolver solver, const ScalarSystem& system) {
+  switch (solver) {
+    case DirectSolver::EigenLdlt:
+      return rivals::make_eigen_ldlt(system);
+    case DirectSolver::Cholmod:
+      return rivals::make_cholmod(system, 1);
+    case DirectSolver::EigenCgIncompleteCholesky:
+      break;
+  }
+  return rivals::make_eigen_cg_ic(system);
+}
+
+class DirectStepper : public Stepper {
+ public:
+  DirectStepper(BodyModel model, const SolverParams& params, DirectSolver solver)
+      : params_(params),
+        solver_kind_(solver),
+        rival_(std::move(model), params.dilatation),
+        system_{{stiffness_pattern(rival_.model.mesh.tets, static_cast<Index>(rival_.nodes())), {}}, {}, {}},
+        assembler_(rival_.model.mesh.tets, system_.matrix.pattern) {
+    if (params.integrator != Integrator::Euler || linearization(params) != Linearize::Start)
+      throw std::runtime_error("make_direct: only implicit Euler with one linearisation at the step's start");
+  }
+
+  void step(double frame, double seconds) override {
+    const StepConstraints constraints = rival_.constraints_at(frame);
+    std::vector<Vec3> ends(rival_.nodes()), base = rival_.velocities;
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      if (constraints.pinned.held[i] != 0) base[i] = (constraints.pinned.targets[i] - rival_.positions[i]) / seconds;
+    find_rotations(rival_.body, params_.rotation, rival_.positions, rival_.rotations, rival_.threads);
+    assemble(constraints, seconds);
+    find_right_side(constraints, base, seconds);
+    solve(constraints.pinned);
+    for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = rival_.positions[i] + seconds * base[i];
+    for (std::size_t k = 0; k < scalar_.mesh_nodes.size(); ++k)
+      ends[static_cast<std::size_t>(scalar_.mesh_nodes[k])] +=
+          seconds * change_.segment<3>(3 * static_cast<Eigen::Index>(k));
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      if (constraints.pinned.held[i] != 0) ends[i] = constraints.pinned.targets[i];
+    rival_.move_to(std::move(ends), seconds, name_of(solver_kind_));
+  }
+  std::span<const Vec3> positions() const override { return rival_.positions; }
+  std::span<const Vec3> velocities() const override { return rival_.velocities; }
+
+ private:
+  void assemble(const StepConstraints& constraints, double h) {
+    std::vector<double> shares(rival_.body.tets.size()), node_terms(rival_.nodes());
+    for (std::size_t e = 0; e < shares.size(); ++e) shares[e] = h * (h + rival_.damping_stiffness[e]);
+    for (std::size_t i = 0; i < node_terms.size(); ++i) node_terms[i] = rival_.damped_mass(i, h);
+    find_stiffness_terms(rival_.body, rival_.positions, rival_.rotations, shares, Curvature::None, terms_, {},
+                         rival_.threads);
+    assembler_.assemble(terms_, node_terms, system_.matrix, rival_.threads);
+    for (const ActivePull& pull : constraints.pulls) add_pull_stiffness(pull, rival_.positions, h * h, system_.matrix);
+  }
+
+  /// Forces at the start, and what damping, stiffness and pulls take from `base`.
+  void find_right_side(const StepConstraints& constraints, const std::vector<Vec3>& base, double h) {
+    system_.load.resize(rival_.nodes());
+    find_step_terms(rival_.body, {rival_.positions, base, rival_.rotations, {h, h}, rival_.damping_stiffness, {}, -1},
+                    step_terms_, rival_.threads);
+    gather_step_forces(rival_.body, step_terms_, system_.load, rival_.threads);
+    for (std::size_t i = 0; i < rival_.nodes(); ++i)
+      system_.load[i] += h * (rival_.masses.mass[i] * rival_.model.gravity - rival_.masses.damping[i] * base[i]);
+    for (const ActivePull& pull : constraints.pulls) add_pull(pull, base, h);
+  }
+
+  /// h (force - h stiffness * base), the force being that at the start.
+  void add_pull(const ActivePull& pull, const std::vector<Vec3>& base, double h) {
+    std::vector<Vec3> forces(rival_.nodes(), Vec3::Zero());
+    add_pull_forces(pull, rival_.positions, forces);
+    for (std::size_t i = 0; i < forces.size(); ++i) system_.load[i] += h * forces[i];
+    const double factor = h * h * pull_factor(pull, rival_.positions);
+    for (const Spring& spring : pull.springs) {
+      Vec3 velocity = Vec3::Zero();
+      for (std::size_t k = 0; k < 4; ++k)
+        velocity += spring.weights[k] * base[static_cast<std::size_t>(spring.nodes[k])];
+      for (std::size_t k = 0; k < 4; ++k)
+        system_.load[static_cast<std::size_t>(spring.nodes[k])] -=
+            factor * spring.stiffness * spring.weights[k] * velocity;
+    }
+  }
+
+  /// Fills change_. The order of elimination is kept while the same nodes are held.
+  void solve(const PinnedNodes& pinned) {
+    if (!solver_ || pinned.held != system_.pinned) {
+      solver_ = nullptr;
+      system_.pinned = pinned.held;
+      scalar_ = rivals::make_scalar_system(system_, rival_.body.rest_positions);
+      if (!scalar_.mesh_nodes.empty()) solver_ = make_solver(solver_kind_, scalar_);
+    } else {
+      rivals::take_values(system_, scalar_);
+    }
+    change_ = Eigen::VectorXd::Zero(scalar_.load.size());
+    if (scalar_.mesh_nodes.empty() || scalar_.load.isZero(0)) return;
+    solver_->update();
+    solver_->solve(params_.tolerance, change_);
+  }
+
+  SolverParams params_;
+  DirectSolver solver_kind_;
+  RivalBody rival_;
+  benchmark_support::LinearSystem system_;
+  StiffnessAssembler assembler_;
+  StiffnessTerms terms_;
+  StepTerms step_terms_;
+  ScalarSystem scalar_;
+  std::unique_ptr<Rival> solver_;
+  Eigen::VectorXd change_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_direct(BodyModel model, const SolverParams& params, DirectSolver solver) {
+  if (solver == DirectSolver::Cholmod && !rivals::has_cholmod()) return nullptr;
+  return std::make_unique<DirectStepper>(std::move(model), params, solver);
+}
+
+}  // namespace softreel::bench
