@@ -67,7 +67,7 @@ std::vector<Method> chosen_methods() {
 }
 
 ProblemResult measure_motion(const SurfaceMesh& surface, const std::vector<BodyModel>& models, const BodyModel& finest,
-                             int halvings) {
+                             int halvings, double most_seconds) {
   ProblemResult result{"creature", "A creature pulled by its head: surface against its converged motion", "", {}, {},
                        {}};
   const std::vector<double> times{6 / kFps, 12 / kFps, kLasts};
@@ -78,14 +78,15 @@ ProblemResult measure_motion(const SurfaceMesh& surface, const std::vector<BodyM
   const auto map_of = [](const BodyModel& model) -> ShapeMap {
     return [&model](std::span<const Vec3> positions) { return surface_of(model, positions); };
   };
-  MotionProblem problem{result.name, finest, kLasts, halved_frames(halvings), 4, {}};
+  MotionProblem problem{result.name, finest, kLasts, halved_frames(halvings), most_seconds, {}};
   const ShapeSamples reference = find_samples(problem, exact, problem.steps.back() / 2, kNone, times, map_of(finest));
   std::vector<Index> all(surface.positions.size());
   std::iota(all.begin(), all.end(), 0);
+  Pace pace;
   for (const BodyModel& model : models) {
     problem.model = model;
     problem.observe = [&] { return observe_shape(reference, kHeight, map_of(model), surface.positions, all); };
-    const std::vector<WorkPoint> points = sweep(problem, chosen_methods());
+    const std::vector<WorkPoint> points = sweep(problem, chosen_methods(), pace);
     result.points.insert(result.points.end(), points.begin(), points.end());
   }
   result.orders.push_back(order_in_mesh(result.points, "BDF2, predictor", 2));
@@ -106,12 +107,13 @@ void add_step_orders(ProblemResult& result, const BodyModel& model, int halvings
   const ShapeSamples reference =
       find_samples(problem, exact, problem.steps.back() / 4, kNone, {6 / kFps, 12 / kFps, kLasts}, all);
   problem.observe = [&] { return observe_shape(reference, kHeight, all, model.mesh.nodes, {0}); };
+  Pace pace;
   for (const auto& [label, order] :
        {std::pair("Euler, start", 1), std::pair("BDF2, predictor", 2), std::pair("Newmark, predictor", 2)}) {
     std::vector<Method> methods = chosen_methods();
     std::erase_if(methods, [&](const Method& method) { return method.label != label; });
     methods.front().tolerances = {1e-6};
-    result.orders.push_back(order_in_step(sweep(problem, methods), label, order));
+    result.orders.push_back(order_in_step(sweep(problem, methods, pace), label, order));
   }
 }
 
@@ -190,7 +192,7 @@ std::vector<ProblemResult> measure_creature(bool quick) {
   const BodyModel finest = make_creature(surface, quick ? 25000 : 250000);
   const int halvings = quick ? 3 : 4;
   std::vector<ProblemResult> results;
-  results.push_back(measure_motion(surface, models, finest, halvings));
+  results.push_back(measure_motion(surface, models, finest, halvings, quick ? 0.5 : 4));
   add_step_orders(results.back(), models.front(), quick ? 6 : 8);
   results.back().text = fmt::format(
       "assets/creature.ply, 1 m high, foam rubber (E = 1.2e5 Pa, nu = 0.4, 300 kg/m^3, damping 0.4 / s of mass), g = "

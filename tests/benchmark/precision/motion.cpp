@@ -33,6 +33,15 @@ int index_of(const std::vector<double>& times, double time) {
   return -1;
 }
 
+std::string pace_key(const std::string& method, double tolerance) {
+  return fmt::format("{} {}", method, tolerance);
+}
+
+/// Elements times steps.
+double work_of(const MotionProblem& problem, double step) {
+  return static_cast<double>(problem.model.mesh.tets.size()) * problem.seconds / step;
+}
+
 class Recorder : public Observer {
  public:
   Recorder(std::vector<double> times, ShapeMap map) : map_(std::move(map)) { samples_.times = std::move(times); }
@@ -112,19 +121,24 @@ WorkPoint run_motion(const MotionProblem& problem, const Method& method, double 
   return point;
 }
 
-std::vector<WorkPoint> sweep(const MotionProblem& problem, const std::vector<Method>& methods) {
+double Pace::expected(const MotionProblem& problem, const Method& method, double step, double tolerance) const {
+  const auto at = seconds_.find(pace_key(method.label, tolerance));
+  return at == seconds_.end() ? 0 : at->second * work_of(problem, step / method.finer);
+}
+
+void Pace::saw(const WorkPoint& point, const MotionProblem& problem) {
+  seconds_[pace_key(point.method, point.tolerance)] = point.seconds / work_of(problem, point.step);
+}
+
+std::vector<WorkPoint> sweep(const MotionProblem& problem, const std::vector<Method>& methods, Pace& pace) {
   std::vector<WorkPoint> points;
   for (const Method& method : methods)
-    for (const double tolerance : method.tolerances) {
-      double expected = 0, last_step = 0;
+    for (const double tolerance : method.tolerances)
       for (const double step : problem.steps) {
-        if (last_step > 0) expected *= last_step / step;
-        if (expected > problem.most_seconds) break;
+        if (pace.expected(problem, method, step, tolerance) > problem.most_seconds) break;
         points.push_back(run_motion(problem, method, step, tolerance));
-        expected = points.back().seconds;
-        last_step = step;
+        pace.saw(points.back(), problem);
       }
-    }
   return points;
 }
 

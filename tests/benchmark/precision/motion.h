@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,8 +39,20 @@ struct MotionProblem {
 /// One run. tolerance: kNone for a method that has none.
 WorkPoint run_motion(const MotionProblem& problem, const Method& method, double step, double tolerance);
 
-/// Every method at every tolerance and step, from the longest step on.
-std::vector<WorkPoint> sweep(const MotionProblem& problem, const std::vector<Method>& methods);
+/// Processor times to expect of runs, from those of the same method that were made: in proportion to elements and
+/// steps.
+class Pace {
+ public:
+  /// s; 0 if the method with this tolerance was not seen yet.
+  double expected(const MotionProblem& problem, const Method& method, double step, double tolerance) const;
+  void saw(const WorkPoint& point, const MotionProblem& problem);
+
+ private:
+  std::map<std::string, double> seconds_;  ///< of one element and step, per method and tolerance
+};
+
+/// Every method at every tolerance and step, from the longest step on. pace: of the problem's other meshes too.
+std::vector<WorkPoint> sweep(const MotionProblem& problem, const std::vector<Method>& methods, Pace& pace);
 
 /// Positions at given times, compared to a reference: the error is the root mean square distance of all points and
 /// times over `scale`, the value the mean y displacement of `watched` at the last time.

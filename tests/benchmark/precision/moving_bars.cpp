@@ -33,11 +33,12 @@ ProblemResult measure_vibration(bool quick) {
   std::vector<Method> methods = all_methods();
   for (Method& method : methods)
     if (method.ours) method.tolerances = {method.tolerances[1]};
+  Pace pace;
   for (const Index across : quick ? std::vector<Index>{1, 2, 4} : std::vector<Index>{2, 4, 6, 8}) {
     MotionProblem problem = vibration_problem(across);
     problem.steps = halved_frames(quick ? 2 : 3);
     problem.most_seconds = quick ? 0.3 : 3;
-    append(result.points, sweep(problem, methods));
+    append(result.points, sweep(problem, methods, pace));
   }
   result.orders.push_back(order_in_mesh(result.points, "Newmark, predictor", 2));
   return result;
@@ -57,7 +58,8 @@ ProblemResult measure_drop(bool quick) {
       "acceleration of the pins, which sends a wave through the bar; no scheme has all of its second order there.";
   MotionProblem problem = drop_problem(quick ? 2 : 4, quick ? 5 : 6);
   problem.most_seconds = quick ? 0.5 : 6;
-  result.points = sweep(problem, all_methods());
+  Pace pace;
+  result.points = sweep(problem, all_methods(), pace);
   for (const auto& [method, order] :
        {std::pair("Euler, start", 1), std::pair("Euler, iterated", 1), std::pair("BDF2, start", 1),
         std::pair("BDF2, predictor", 2), std::pair("BDF2, iterated", 2), std::pair("Newmark, start", 1),
@@ -78,7 +80,8 @@ ProblemResult measure_settling(bool quick) {
   MotionProblem problem = settling_problem(quick ? 2 : 4);
   problem.most_seconds = quick ? 0.5 : 4;
   if (quick) problem.steps.pop_back();
-  result.points = sweep(problem, all_methods());
+  Pace pace;
+  result.points = sweep(problem, all_methods(), pace);
   return result;
 }
 
