@@ -2,6 +2,7 @@
 # sources to bench_parts, which bench_tests link too.
 add_library(bench_parts STATIC
   bench.cpp
+  limits/bending_bar.cpp limits/cost_curve.cpp limits/limits.cpp limits/strain_cells.cpp limits/tet_remedies.cpp
   report/machine.cpp report/plot.cpp report/report.cpp report/table.cpp
   steppers/direct_stepper.cpp steppers/projective_stepper.cpp steppers/rival_body.cpp steppers/softreel_stepper.cpp
   steppers/xpbd_stepper.cpp)

@@ -2,6 +2,8 @@
 
 #include <ctime>
 
+#include "tests/benchmark/limits/limits.h"
+
 namespace softreel::bench {
 namespace {
 
@@ -14,7 +16,9 @@ double seconds_of(clockid_t clock) {
 }  // namespace
 
 std::span<const Benchmark> benchmarks() {
-  static const std::vector<Benchmark> all;
+  static const std::vector<Benchmark> all{
+      {"limits", "What bounds the accuracy: locking of linear tetrahedra, and its remedies", run_limits},
+  };
   return all;
 }
 
