@@ -4,7 +4,7 @@ add_library(bench_parts STATIC
   bench.cpp
   limits/bending_bar.cpp limits/cost_curve.cpp limits/limits.cpp limits/strain_cells.cpp limits/tet_remedies.cpp
   report/machine.cpp report/plot.cpp report/report.cpp report/table.cpp
-  steppers/direct_stepper.cpp steppers/projective_stepper.cpp steppers/rival_body.cpp steppers/softreel_stepper.cpp
+  steppers/descent_memory.cpp steppers/direct_stepper.cpp steppers/projective_stepper.cpp steppers/rival_body.cpp steppers/softreel_stepper.cpp
   steppers/xpbd_stepper.cpp)
 target_link_libraries(bench_parts PUBLIC bar_problem rivals softreel_core fmt::fmt PRIVATE softreel_warnings)
 target_include_directories(bench_parts PUBLIC "${PROJECT_SOURCE_DIR}")

@@ -68,8 +68,12 @@ std::unique_ptr<Stepper> make_xpbd(BodyModel model, const XpbdParams& params);
 /// iterated step of implicit Euler, Rayleigh damping included. Tuned as users would: starts from inertia alone, one
 /// scalar matrix for x, y and z, factored by CHOLMOD where it is there, else by Eigen's LDLT, and again only if the
 /// held nodes, a pull's stiffness or the step change; 10 iterations are usual. Rotations by core's vector kernel.
+///
+/// With `memory` its iterations are the descent with limited memory and line search that T. Liu, S. Bouaziz and
+/// L. Kavan made of them (2017; they remember 5), which needs many fewer where nu is high.
 struct ProjectiveParams {
   int iterations = 10;  ///< of local and global steps, 1 or more
+  int memory = 0;       ///< moves that the next one knows of
 };
 std::unique_ptr<Stepper> make_projective_dynamics(BodyModel model, const ProjectiveParams& params);
 
