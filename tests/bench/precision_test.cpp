@@ -107,7 +107,7 @@ TEST(Precision, NearsSaintVenantsTorsionWithTheSecondOrder) {
 
 /// Errors of a method in the last three steps of a motion, at a tight tolerance.
 double step_order(const MotionProblem& problem, Integrator integrator, Linearize linearize) {
-  Method method{"", "", true, "", {1e-8}, 1, [=](const BodyModel& model, double tolerance, const Threads& threads) {
+  Method method{"", "", true, "", {1e-7}, 1, [=](const BodyModel& model, double tolerance, const Threads& threads) {
                   return make_softreel(model, scheme_params(integrator, linearize, tolerance), threads);
                 }};
   Pace pace;
@@ -115,7 +115,7 @@ double step_order(const MotionProblem& problem, Integrator integrator, Linearize
 }
 
 TEST(Precision, DroppedBarShowsTheOrderOfEachScheme) {
-  MotionProblem problem = drop_problem(2, 7);
+  MotionProblem problem = drop_problem(2, 6);
   problem.steps.erase(problem.steps.begin(), problem.steps.end() - 3);
   EXPECT_NEAR(step_order(problem, Integrator::Euler, Linearize::Start), 1, 0.2);
   EXPECT_NEAR(step_order(problem, Integrator::Euler, Linearize::Iterated), 1, 0.2);

@@ -8,6 +8,7 @@
 
 #include "core/constraints/pins.h"
 #include "core/elasticity/mass.h"
+#include "tests/benchmark/steppers/descent_memory.h"
 #include "tests/benchmark/steppers/stepper.h"
 #include "tests/core/dynamics/dynamics_support.h"
 
@@ -61,6 +62,11 @@ const std::vector<Method>& methods() {
       xpbd("XpbdSmallSteps", {50, 1}, 2e-3),
       xpbd("XpbdIterated", {10, 10}, 5e-3),
       {"Projective", [](BodyModel m, const Threads&) { return make_projective_dynamics(std::move(m), {60}); }, 1, 1e-3},
+      {"ProjectiveWithMemory",
+       [](BodyModel m, const Threads&) {
+         return make_projective_dynamics(std::move(m), {20, 5});
+       },
+       1, 1e-3},
   };
   return all;
 }
@@ -269,6 +275,24 @@ INSTANTIATE_TEST_SUITE_P(Solvers, Direct,
                          ::testing::Values(DirectSolver::EigenLdlt, DirectSolver::Cholmod,
                                            DirectSolver::EigenCgIncompleteCholesky));
 
+TEST(DescentMemory, MapsTheLastChangeOfGradientToTheLastMove) {
+  const auto random = [] { return Eigen::MatrixX3d::Random(7, 3).eval(); };
+  const auto precondition = [](const Eigen::MatrixX3d& v) { return (0.5 * v).eval(); };
+  DescentMemory memory(2);
+  const Eigen::MatrixX3d gradient = random();
+  EXPECT_LT((memory.direction(gradient, precondition) - 0.5 * gradient).norm(), 1e-14);
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::MatrixX3d move = random(), change = 2 * move + 0.3 * random();
+    ASSERT_GT(move.cwiseProduct(change).sum(), 0);
+    memory.remember(move, change);
+    EXPECT_LT((memory.direction(change, precondition) - move).norm(), 1e-12);
+    memory.remember(move, -change);  // curves downwards: not taken
+    EXPECT_LT((memory.direction(change, precondition) - move).norm(), 1e-12);
+  }
+  memory.forget();
+  EXPECT_LT((memory.direction(gradient, precondition) - 0.5 * gradient).norm(), 1e-14);
+}
+
 TEST(Projective, ConvergesToTheIteratedStepOfSoftreel) {
   const BodyModel model = busy_bar();
   SolverParams params = euler_params();
@@ -276,13 +300,16 @@ TEST(Projective, ConvergesToTheIteratedStepOfSoftreel) {
   const Threads threads(1);
   const auto ours = make_softreel(model, params, threads);
   const auto few = make_projective_dynamics(model, {20}), many = make_projective_dynamics(model, {1000});
-  double few_error = 0, many_error = 0;
+  const auto remembering = make_projective_dynamics(model, {100, 5});
+  double few_error = 0, many_error = 0, remembering_error = 0;
   for (int k = 1; k <= 8; ++k) {
-    for (Stepper* stepper : {ours.get(), few.get(), many.get()}) stepper->step(k, kStep);
+    for (Stepper* stepper : {ours.get(), few.get(), many.get(), remembering.get()}) stepper->step(k, kStep);
     few_error = std::max(few_error, distance(few->positions(), ours->positions()));
     many_error = std::max(many_error, distance(many->positions(), ours->positions()));
+    remembering_error = std::max(remembering_error, distance(remembering->positions(), ours->positions()));
   }
   EXPECT_LT(many_error, 1e-7);
+  EXPECT_LT(remembering_error, 1e-6);
   EXPECT_LT(many_error, 1e-2 * few_error);
 }
 

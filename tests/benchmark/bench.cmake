@@ -2,12 +2,13 @@
 # sources to bench_parts, which bench_tests link too.
 add_library(bench_parts STATIC
   bench.cpp
+  limits/bending_bar.cpp limits/cost_curve.cpp limits/limits.cpp limits/strain_cells.cpp limits/tet_remedies.cpp
   report/machine.cpp report/plot.cpp report/report.cpp report/table.cpp
   precision/bar_models.cpp precision/bar_motions.cpp precision/bar_statics.cpp precision/beam_theory.cpp
   precision/calculix.cpp precision/creature.cpp precision/methods.cpp precision/motion.cpp precision/moving_bars.cpp
   precision/precision.cpp precision/static_answer.cpp precision/work_precision.cpp
-  steppers/direct_stepper.cpp steppers/projective_stepper.cpp steppers/rival_body.cpp steppers/softreel_stepper.cpp
-  steppers/xpbd_stepper.cpp)
+  steppers/descent_memory.cpp steppers/direct_stepper.cpp steppers/projective_stepper.cpp steppers/rival_body.cpp
+  steppers/softreel_stepper.cpp steppers/xpbd_stepper.cpp)
 target_link_libraries(bench_parts PUBLIC bar_problem rivals softreel_core fmt::fmt PRIVATE softreel_warnings)
 target_include_directories(bench_parts PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(bench_parts PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

@@ -2,6 +2,7 @@
 
 #include <ctime>
 
+#include "tests/benchmark/limits/limits.h"
 #include "tests/benchmark/precision/precision.h"
 
 namespace softreel::bench {
@@ -18,6 +19,7 @@ double seconds_of(clockid_t clock) {
 std::span<const Benchmark> benchmarks() {
   static const std::vector<Benchmark> all{
       {"precision", "Error against processor time, beside rivals and theory", run_precision},
+      {"limits", "What bounds the accuracy: locking of linear tetrahedra, and its remedies", run_limits},
   };
   return all;
 }

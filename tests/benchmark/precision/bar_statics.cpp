@@ -266,7 +266,8 @@ ProblemResult measure_weighed_bar(bool quick) {
     return b + (b - a) / (ratio * ratio - 1);
   };
   const double whole = converged(kGravity), tenth = converged(0.1 * kGravity);
-  ProblemResult result{"bar", "The targets' bar under its weight: tip against its converged value", "", {}, {}, {}};
+  ProblemResult result{"bar", "The bar of the targets under its weight: tip against its converged value", "", {}, {},
+                       {}};
   const std::vector<Index> sizes = quick ? std::vector<Index>{2, 3, 4, 6} : std::vector<Index>{2, 3, 4, 6, 8, 12};
   result.points = deflections(result.name, bar_under(kGravity), sizes, 6, quick ? 2 : 3, whole);
   const std::vector<WorkPoint> faint =

@@ -113,15 +113,16 @@ std::vector<Method> rival_methods() {
                 return make_xpbd(model, {1, 1});
               }};
   methods.push_back(std::move(xpbd));
-  for (const int iterations : {10, 50}) {
-    Method projective{fmt::format("projective dynamics, {} iterations", iterations),
+  for (const auto& [iterations, memory] : {std::pair(10, 0), std::pair(50, 0), std::pair(10, 5)}) {
+    Method projective{fmt::format("projective dynamics, {} iterations{}", iterations, memory > 0 ? ", L-BFGS" : ""),
                       "projective dynamics",
                       false,
-                      "Bouaziz et al. 2014 with one prefactored matrix; 10 iterations a step are usual",
+                      memory > 0 ? "the same with a memory of 5 moves and a line search (Liu et al. 2017)"
+                                 : "Bouaziz et al. 2014 with one prefactored matrix; 10 iterations a step are usual",
                       {kNone},
                       1,
-                      [iterations](const BodyModel& model, double, const Threads&) {
-                        return make_projective_dynamics(model, {iterations});
+                      [iterations, memory](const BodyModel& model, double, const Threads&) {
+                        return make_projective_dynamics(model, {iterations, memory});
                       }};
     methods.push_back(std::move(projective));
   }

@@ -26,18 +26,28 @@ Cell order_cell(double value) {
   return std::isfinite(value) ? Cell(std::stod(fmt::format("{:.2f}", value))) : Cell(kNone);
 }
 
-/// Runs that failed, one line a method.
+/// Methods with runs that failed, or that ended farther from the truth than doing nothing: fronts do not show them.
 std::string failures_of(const std::vector<WorkPoint>& points) {
-  std::map<std::string, std::pair<int, std::string>> failed;
-  for (const WorkPoint& p : points)
-    if (!p.failure.empty()) {
-      auto& [count, why] = failed[p.method];
-      ++count;
-      why = p.failure;
-    }
+  struct Count {
+    int runs = 0, failed = 0, astray = 0;
+    std::string why;
+  };
+  std::map<std::string, Count> counts;
+  for (const WorkPoint& p : points) {
+    Count& count = counts[p.method];
+    ++count.runs;
+    if (p.error > 1) ++count.astray;
+    if (p.failure.empty()) continue;
+    ++count.failed;
+    count.why = p.failure;
+  }
   std::string text;
-  for (const auto& [method, what] : failed)
-    text += fmt::format(" {} failed {} times ({}).", method, what.first, what.second);
+  for (const auto& [method, count] : counts) {
+    if (count.failed > 0)
+      text += fmt::format(" {}: {} of {} runs failed ({}).", method, count.failed, count.runs, count.why);
+    if (count.astray > 0)
+      text += fmt::format(" {}: {} of {} runs have an error above 1.", method, count.astray, count.runs);
+  }
   return text;
 }
 

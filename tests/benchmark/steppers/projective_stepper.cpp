@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "tests/benchmark/rivals/rival.h"
+#include "tests/benchmark/steppers/descent_memory.h"
 #include "tests/benchmark/steppers/rival_body.h"
 #include "tests/benchmark/steppers/stepper.h"
 
@@ -24,31 +25,36 @@ double global_weight(const ElasticBody& body, std::size_t e) {
   return body.shapes[e].volume * (2 * body.laws[e].mu + 3 * body.laws[e].lambda);
 }
 
+/// Armijo's share of the descent that the first slope promises, and the shortest part of a direction.
+constexpr double kArmijo = 1e-4, kShortest = 1e-3;
+
+/// What one step is to minimise.
+struct StepGoal {
+  const StepConstraints& constraints;
+  std::vector<Vec3> inertial;
+  double seconds = 0;
+};
+
+struct Evaluation {
+  double objective = 0;      ///< J
+  Eigen::MatrixX3d descent;  ///< minus its gradient, N, one row per free node
+};
+
 class ProjectiveStepper : public Stepper {
  public:
   ProjectiveStepper(BodyModel model, const ProjectiveParams& params)
       : params_(params), rival_(std::move(model), Dilatation::Linear) {
     if (params.iterations < 1) throw std::runtime_error("make_projective_dynamics: iterations: 1 or more");
+    if (params.memory < 0) throw std::runtime_error("make_projective_dynamics: memory: 0 or more");
   }
 
   void step(double frame, double seconds) override {
     const StepConstraints constraints = rival_.constraints_at(frame);
     prepare(constraints, seconds);
-    const std::vector<Vec3> inertial = rival_.inertial_positions(constraints.pinned, seconds);
-    std::vector<Vec3> ends = inertial;
+    const StepGoal goal{constraints, rival_.inertial_positions(constraints.pinned, seconds), seconds};
     find_rotations(rival_.body, RotationMethod::Consistent, rival_.positions, rival_.rotations, rival_.threads);
     start_rotations_ = rival_.rotations;
-    for (int i = 0; i < params_.iterations && free_count_ > 0; ++i) {
-      find_forces(ends, constraints, seconds);
-      for (std::size_t k = 0; k < ends.size(); ++k)
-        if (numbers_[k] >= 0)
-          right_sides_.row(numbers_[k]) =
-              forces_[k] + rival_.damped_mass(k, seconds) / (seconds * seconds) * (inertial[k] - ends[k]);
-      const Eigen::MatrixX3d change = factor_->solve(right_sides_);
-      for (std::size_t k = 0; k < ends.size(); ++k)
-        if (numbers_[k] >= 0) ends[k] += change.row(numbers_[k]).transpose();
-    }
-    rival_.move_to(std::move(ends), seconds, "projective dynamics");
+    rival_.move_to(free_count_ > 0 ? descend(goal) : goal.inertial, seconds, "projective dynamics");
   }
   std::span<const Vec3> positions() const override { return rival_.positions; }
   std::span<const Vec3> velocities() const override { return rival_.velocities; }
@@ -66,7 +72,6 @@ class ProjectiveStepper : public Stepper {
     free_count_ = 0;
     for (std::size_t i = 0; i < rival_.nodes(); ++i)
       if (key.held[i] == 0) numbers_[i] = free_count_++;
-    right_sides_.resize(free_count_, 3);
     if (free_count_ > 0) factor(constraints, seconds);
     key_ = std::move(key);
   }
@@ -99,28 +104,85 @@ class ProjectiveStepper : public Stepper {
     if (!factor_) factor_ = rivals::make_eigen_factor(matrix);
   }
 
-  /// Forces of the local step: an element with the projections R and F - tr(R^T F - I) / 3 R has the stress
+  /// From inertia alone, so many local and global steps.
+  std::vector<Vec3> descend(const StepGoal& goal) {
+    DescentMemory memory(static_cast<std::size_t>(params_.memory));
+    std::vector<Vec3> ends = goal.inertial;
+    Evaluation now = evaluate(ends, goal);
+    for (int i = 0; i < params_.iterations; ++i) {
+      const Eigen::MatrixX3d direction =
+          memory.direction(now.descent, [&](const Eigen::MatrixX3d& v) { return factor_->solve(v); });
+      if (params_.memory == 0) {
+        ends = moved(ends, direction, 1);
+        if (i + 1 < params_.iterations) now = evaluate(ends, goal);
+        continue;
+      }
+      double length = 1;
+      Evaluation next = evaluate(moved(ends, direction, length), goal);
+      const double slope = now.descent.cwiseProduct(direction).sum();
+      while (!(next.objective <= now.objective - kArmijo * length * slope) && length > kShortest) {
+        length /= 2;
+        next = evaluate(moved(ends, direction, length), goal);
+      }
+      if (!(next.objective < now.objective)) break;  // round-off: nothing is left to gain
+      ends = moved(ends, direction, length);
+      memory.remember(length * direction, now.descent - next.descent);
+      now = std::move(next);
+    }
+    return ends;
+  }
+
+  std::vector<Vec3> moved(std::vector<Vec3> ends, const Eigen::MatrixX3d& direction, double length) const {
+    for (std::size_t k = 0; k < ends.size(); ++k)
+      if (numbers_[k] >= 0) ends[k] += length * direction.row(numbers_[k]).transpose();
+    return ends;
+  }
+
+  /// What implicit Euler minimises, and the local step's forces, which are its descent.
+  Evaluation evaluate(const std::vector<Vec3>& ends, const StepGoal& goal) {
+    Evaluation result{find_stresses(ends, goal.seconds), Eigen::MatrixX3d(free_count_, 3)};
+    forces_.resize(rival_.nodes());
+    gather_forces(rival_.body, stresses_, forces_, rival_.threads);
+    for (const ActivePull& pull : goal.constraints.pulls) {
+      add_pull_forces(pull, ends, forces_);
+      result.objective += pull_energy(pull, ends);
+    }
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      if (numbers_[k] < 0) continue;
+      const double inertia = rival_.damped_mass(k, goal.seconds) / (goal.seconds * goal.seconds);
+      const Vec3 way = goal.inertial[k] - ends[k];
+      result.objective += 0.5 * inertia * way.squaredNorm();
+      result.descent.row(numbers_[k]) = forces_[k] + inertia * way;
+    }
+    return result;
+  }
+
+  /// Weighted stresses, and their energy. With the projections R and F - tr(R^T F - I) / 3 R an element has the stress
   /// 2 mu (F - R) + lambda tr(R^T F - I) R, which is the corotated material's. Damping as in core's iterated step.
-  void find_forces(const std::vector<Vec3>& positions, const StepConstraints& constraints, double h) {
+  double find_stresses(const std::vector<Vec3>& positions, double h) {
     const ElasticBody& body = rival_.body;
     find_rotations(body, RotationMethod::Consistent, positions, rival_.rotations, rival_.threads);
     stresses_.resize(body.tets.size());
+    double energy = 0;
     for (std::size_t e = 0; e < body.tets.size(); ++e) {
       const ElementShape& shape = body.shapes[e];
       const Mat3 F = deformation_gradient(shape.gradients, nodes_of(body.tets[e], positions));
-      stresses_[e] = shape.volume * corotated_stress(body.laws[e], rival_.rotations[e].toRotationMatrix(), F);
+      const Mat3 R = rival_.rotations[e].toRotationMatrix();
+      energy += add_stress(e, shape.volume, R, corotated_strain(R, F), stresses_[e].setZero());
       const double damping = rival_.damping_stiffness[e] / h;
       if (damping == 0) continue;
       const Mat3 before = deformation_gradient(shape.gradients, nodes_of(body.tets[e], rival_.positions));
-      const Mat3 R = start_rotations_[e].toRotationMatrix();
-      const Mat3 strain = R.transpose() * (F - before);
-      stresses_[e] +=
-          damping * shape.volume * R *
-          (body.laws[e].mu * (strain + strain.transpose()) + body.laws[e].lambda * strain.trace() * Mat3::Identity());
+      const Mat3 start = start_rotations_[e].toRotationMatrix(), strain = start.transpose() * (F - before);
+      energy += add_stress(e, damping * shape.volume, start, 0.5 * (strain + strain.transpose()), stresses_[e]);
     }
-    forces_.resize(rival_.nodes());
-    gather_forces(body, stresses_, forces_, rival_.threads);
-    for (const ActivePull& pull : constraints.pulls) add_pull_forces(pull, positions, forces_);
+    return energy;
+  }
+
+  /// Adds weight R (2 mu strain + lambda tr(strain) I); returns its energy.
+  double add_stress(std::size_t e, double weight, const Mat3& R, const Mat3& strain, Mat3& stress) const {
+    const double mu = weight * rival_.body.laws[e].mu, pressure = weight * rival_.body.laws[e].lambda * strain.trace();
+    stress += R * (2 * mu * strain + pressure * Mat3::Identity());
+    return mu * strain.squaredNorm() + 0.5 * pressure * strain.trace();
   }
 
   ProjectiveParams params_;
@@ -129,7 +191,6 @@ class ProjectiveStepper : public Stepper {
   std::vector<Index> numbers_;  ///< per node: its row, -1 if it is held
   Index free_count_ = 0;
   std::unique_ptr<rivals::Factor> factor_;
-  Eigen::MatrixX3d right_sides_;
   std::vector<Quaternion> start_rotations_;
   std::vector<Mat3> stresses_;
   std::vector<Vec3> forces_;

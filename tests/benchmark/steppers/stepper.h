@@ -50,9 +50,9 @@ std::unique_ptr<Stepper> make_direct(BodyModel model, const SolverParams& params
 /// in statics and of first in motion, as the substep goes to zero. It does so by substeps only: repeated within a
 /// substep the sweeps do not end at implicit Euler's step, for the direction of |F - R| turns under the multiplier (of
 /// a bar's static tip 2.8 % is left at h = 1/48 s after any number of iterations). Hence, as the 2019 paper advises,
-/// tuned by spending all on substeps: 1 iteration, and 10 to 50 substeps a frame for bodies of 1e5 Pa. Lexicographic
-/// Gauss-Seidel: a colouring brings threads, not cycles; the rotation starts from the last one; both constraints are
-/// solved together (Macklin and Mueller 2021).
+/// tuned by spending all on substeps: 1 iteration, and 10 to 50 substeps a frame for bodies of 1e5 Pa. Gauss-Seidel
+/// nearly in the order of the elements, in groups of 16 without a common node, whose rotations core's vector kernel
+/// finds at once from the last ones; both constraints are solved together (Macklin and Mueller 2021).
 /// Damping: the mass part exactly; damping_stiffness by eq. (26) of 2016, along the constraints only, which is less
 /// than Rayleigh's and, with one iteration, slows the way to statics: compare motion with damping_stiffness = 0.
 struct XpbdParams {
@@ -68,8 +68,12 @@ std::unique_ptr<Stepper> make_xpbd(BodyModel model, const XpbdParams& params);
 /// iterated step of implicit Euler, Rayleigh damping included. Tuned as users would: starts from inertia alone, one
 /// scalar matrix for x, y and z, factored by CHOLMOD where it is there, else by Eigen's LDLT, and again only if the
 /// held nodes, a pull's stiffness or the step change; 10 iterations are usual. Rotations by core's vector kernel.
+///
+/// With `memory` its iterations are the descent with limited memory and line search that T. Liu, S. Bouaziz and
+/// L. Kavan made of them (2017; they remember 5), which needs many fewer where nu is high.
 struct ProjectiveParams {
   int iterations = 10;  ///< of local and global steps, 1 or more
+  int memory = 0;       ///< moves that the next one knows of
 };
 std::unique_ptr<Stepper> make_projective_dynamics(BodyModel model, const ProjectiveParams& params);
 

@@ -6,6 +6,7 @@
 // R the polar rotation: their energy, C^2 / (2 compliance), is that of the corotated linear material. R drops out of
 // the derivatives, being stationary: dD = n : dF with n = (F - R) / D, dH = R : dF. The two are solved together, as
 // M. Macklin and M. Mueller, "A constraint-based formulation of stable neo-Hookean materials", 2021, advise.
+#include <algorithm>
 #include <stdexcept>
 
 #include <Eigen/LU>
@@ -22,6 +23,37 @@ using Mat2 = Eigen::Matrix2d;
 /// Below this D, which is a strain, there is no direction n and nothing to correct.
 constexpr double kNoStrain = 1e-14;
 
+/// Elements without a common node, whose rotations the vector kernel finds at once: as good as one after the other.
+struct DisjointElements {
+  std::array<Index, kRotationLanes> elements{};
+  std::size_t count = 0;
+};
+
+/// All elements, nearly in their order: each goes into the first group with room that has none of its nodes.
+std::vector<DisjointElements> group_elements(const std::vector<Tet>& tets, std::size_t nodes) {
+  std::vector<DisjointElements> groups;
+  std::vector<std::vector<std::size_t>> groups_of_node(nodes);  // ascending
+  std::vector<std::size_t> open;
+  for (std::size_t e = 0; e < tets.size(); ++e) {
+    const auto fits = [&](std::size_t group) {
+      return std::none_of(tets[e].begin(), tets[e].end(), [&](Index node) {
+        const std::vector<std::size_t>& taken = groups_of_node[static_cast<std::size_t>(node)];
+        return std::find(taken.rbegin(), taken.rend(), group) != taken.rend();
+      });
+    };
+    auto at = std::find_if(open.begin(), open.end(), fits);
+    if (at == open.end()) {
+      at = open.insert(open.end(), groups.size());
+      groups.emplace_back();
+    }
+    DisjointElements& group = groups[*at];
+    group.elements[group.count++] = static_cast<Index>(e);
+    for (const Index node : tets[e]) groups_of_node[static_cast<std::size_t>(node)].push_back(*at);
+    if (group.count == group.elements.size()) open.erase(at);
+  }
+  return groups;
+}
+
 /// Multipliers of D and H, and of springs, within one substep.
 struct Multipliers {
   std::vector<Vec2> elements;
@@ -31,7 +63,9 @@ struct Multipliers {
 class XpbdStepper : public Stepper {
  public:
   XpbdStepper(BodyModel model, const XpbdParams& params)
-      : params_(params), rival_(std::move(model), Dilatation::Linear) {
+      : params_(params),
+        rival_(std::move(model), Dilatation::Linear),
+        groups_(group_elements(rival_.body.tets, rival_.nodes())) {
     if (params.substeps < 1 || params.iterations < 1)
       throw std::runtime_error("make_xpbd: substeps and iterations: 1 or more");
   }
@@ -66,7 +100,7 @@ class XpbdStepper : public Stepper {
     for (const ActivePull& pull : pulls) springs += pull.springs.size();
     multipliers_.springs.assign(springs, Vec3::Zero());
     for (int i = 0; i < params_.iterations; ++i) {
-      for (std::size_t e = 0; e < rival_.body.tets.size(); ++e) project_element(e, h, ends);
+      for (const DisjointElements& group : groups_) project_group(group, h, ends);
       std::size_t s = 0;
       for (const ActivePull& pull : pulls)
         for (const Spring& spring : pull.springs) project_spring(spring, h, multipliers_.springs[s++], ends);
@@ -74,12 +108,32 @@ class XpbdStepper : public Stepper {
     rival_.move_to(std::move(ends), h, "XPBD");
   }
 
-  void project_element(std::size_t e, double h, std::vector<Vec3>& ends) {
+  void project_group(const DisjointElements& group, double h, std::vector<Vec3>& ends) {
+    MatrixLanes matrices;
+    QuaternionLanes lanes;
+    std::array<Mat3, kRotationLanes> F;
+    for (std::size_t lane = 0; lane < kRotationLanes; ++lane) {
+      const auto e = static_cast<std::size_t>(group.elements[std::min(lane, group.count - 1)]);
+      F[lane] = deformation_gradient(rival_.body.shapes[e].gradients, nodes_of(rival_.body.tets[e], ends));
+      const Quaternion& guess = rival_.rotations[e];
+      const std::array<double, 4> entries{guess.w(), guess.x(), guess.y(), guess.z()};
+      for (std::size_t k = 0; k < 4; ++k) lanes.entries[k][lane] = entries[k];
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) matrices.entries[3 * r + c][lane] = F[lane](r, c);
+    }
+    find_rotations(matrices, lanes);
+    for (std::size_t lane = 0; lane < group.count; ++lane) {
+      const auto e = static_cast<std::size_t>(group.elements[lane]);
+      const auto& q = lanes.entries;
+      rival_.rotations[e] = Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]);
+      project_element(e, F[lane], h, ends);
+    }
+  }
+
+  void project_element(std::size_t e, const Mat3& F, double h, std::vector<Vec3>& ends) {
     const ElasticBody& body = rival_.body;
     const Tet& tet = body.tets[e];
     const Gradients& b = body.shapes[e].gradients;
-    const Mat3 F = deformation_gradient(b, nodes_of(tet, ends));
-    rival_.rotations[e] = find_rotation(F, rival_.rotations[e]);
     const Mat3 R = rival_.rotations[e].toRotationMatrix();
     const double strain = (F - R).norm();
     if (strain < kNoStrain) return;
@@ -133,6 +187,7 @@ class XpbdStepper : public Stepper {
 
   XpbdParams params_;
   RivalBody rival_;
+  std::vector<DisjointElements> groups_;
   std::vector<double> inverse_masses_;  ///< of the damped masses; 0 where held
   Multipliers multipliers_;
 };
