@@ -74,8 +74,7 @@ std::vector<WorkPoint> deflections(const std::string& problem, const BarOfSize& 
 std::string calculix_text() {
   if (!has_calculix()) return " CalculiX' program `ccx` is not installed here (Debian: calculix-ccx): it is left out.";
   return " CalculiX runs as a process of its own on one thread with its default solver; its time is all of that "
-         "process. "
-         "C3D4 are the same linear tetrahedra; C3D10 have quadratic shape functions on the same elements.";
+         "process. C3D4 are the same linear tetrahedra; C3D10 have quadratic shape functions on the same elements.";
 }
 
 /// How far softreel's tightest answers and CalculiX' are apart on the same meshes.
@@ -176,9 +175,7 @@ ProblemResult measure_cantilever(bool quick) {
   result.text =
       "Length 1 m, section 0.1 x 0.1 m, E = 1e6 Pa, nu = 0 (so that the clamp adds no stress of its own), weight so "
       "small that all is linear. Truth: w = q L^4 / (8 E I) + q L^2 / (2 kappa G A), kappa = 10 (1 + nu) / (12 + 11 "
-      "nu) "
-      "= 5/6 (Cowper 1966); a clamp that keeps the section from warping makes the bar a little stiffer "
-      "than that." +
+      "nu) = 5/6 (Cowper 1966); a clamp that keeps the section from warping makes the bar a little stiffer than that." +
       calculix_text();
   result.points =
       quick ? deflections(result.name, make, {1, 2, 3, 4, 6}, 3, 2, timoshenko_tip(beam, kGravity))
@@ -194,10 +191,9 @@ ProblemResult measure_elastica(bool quick) {
   result.text =
       "Length 1 m, section 0.02 x 0.02 m (slenderness 50), E = 1e6 Pa, nu = 0. Truth: the elastica by shooting, which "
       "gives the numbers of Mattiasson 1981 to his last digit. What it leaves out moves the tip by 3 (a/L)^2 / 5 = "
-      "2.4e-4 "
-      "of w at small loads (shear) and by up to 3.3e-4 L (stretch under 10). The dead load is a pull "
-      "with a limited force towards a target 1e4 m away: its direction errs by 1e-4. Time and error are those of the "
-      "four loads together, each from rest." +
+      "2.4e-4 of w at small loads (shear) and by up to 3.3e-4 L (stretch under 10). The dead load is a pull with a "
+      "limited force towards a target 1e4 m away: its direction errs by 1e-4. Time and error are those of the four "
+      "loads together, each from rest." +
       calculix_text();
   result.tables.push_back({"precision_elastica_tips",
                            "Elastica: the tip under each load",
@@ -277,10 +273,8 @@ ProblemResult measure_weighed_bar(bool quick) {
   result.text = fmt::format(
       "1 x 0.25 x 0.25 m, one end clamped in its plane, E = 1e6 Pa, nu = 0.4, 1000 kg/m^3, 9.81 m/s^2. Truth: "
       "softreel's own tip, extrapolated (Richardson, order 2) from {} and {} cubes across: {:.5f} m, and {:.6f} m "
-      "under "
-      "a tenth of the weight. At full weight strains reach 12 % at the clamp, and CalculiX' material, linear in "
-      "Green's "
-      "strain, is another one; under a tenth the two materials are the same.",
+      "under a tenth of the weight. At full weight strains reach 12 % at the clamp, and CalculiX' material, linear in "
+      "Green's strain, is another one; under a tenth the two materials are the same.",
       coarse, fine, whole, tenth);
   result.text += calculix_text();
   result.text += difference_text(result.points);

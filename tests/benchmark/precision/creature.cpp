@@ -218,14 +218,12 @@ std::vector<ProblemResult> measure_creature(bool quick) {
       "0.42 m for 12 more. Truth: the surface on {} tetrahedra by BDF2 in {:.0f} steps a second, whose own error the "
       "curves cannot show. The pins hold whole tetrahedra: how far up the soles they reach changes with the mesh. A "
       "method that is too soft because it stops short of its equations can come nearer to the truth than it deserves "
-      "on "
-      "a mesh that is too stiff.",
+      "on a mesh that is too stiff.",
       finest.mesh.tets.size(), 2 * kFps * (1 << (halvings - 1)));
   results.push_back(measure_rest(surface, models, finest));
   results.back().text =
       "The same creature without the pull under 3 m/s^2, in equilibrium; error over the root mean square displacement "
-      "of "
-      "its surface.";
+      "of its surface.";
   return results;
 }
 

@@ -72,20 +72,19 @@ std::vector<Method> softreel_variants() {
     return params;
   };
   return {
-      softreel_method(
-          "paper 2008", "paper 2008 (V-cycles)",
-          "the paper as printed: rotations of eq. (3) by its bare Newton, one solve a step by plain V-cycles "
-          "of one forward and one backward sweep",
-          {1e-1, 1e-3},
-          [euler](double tolerance) {
-            SolverParams params = euler(RotationMethod::Paper, tolerance);
-            params.multigrid.method = SolveMethod::Cycles;
-            params.multigrid.coarse_cycle = CycleKind::V;
-            params.multigrid.smoother = SmootherKind::OneWayGaussSeidel;
-            params.keep_hierarchy = false;
-            params.matrix_lag = 0;
-            return params;
-          }),
+      softreel_method("paper 2008", "paper 2008 (V-cycles)",
+                      "the paper as printed: rotations of eq. (3) by its bare Newton, one solve a step by plain "
+                      "V-cycles of one forward and one backward sweep",
+                      {1e-1, 1e-3},
+                      [euler](double tolerance) {
+                        SolverParams params = euler(RotationMethod::Paper, tolerance);
+                        params.multigrid.method = SolveMethod::Cycles;
+                        params.multigrid.coarse_cycle = CycleKind::V;
+                        params.multigrid.smoother = SmootherKind::OneWayGaussSeidel;
+                        params.keep_hierarchy = false;
+                        params.matrix_lag = 0;
+                        return params;
+                      }),
       softreel_method("small strain", "small strain", "linear elasticity without rotations, Euler, softreel's solver",
                       {1e-3}, [euler](double tolerance) { return euler(RotationMethod::None, tolerance); }),
       softreel_method("smoothed polar", "smoothed polar",
@@ -99,10 +98,10 @@ std::vector<Method> rival_methods() {
              "Euler, one solve a step as softreel's, by Eigen's simplicial LDLT; order of elimination kept", kNone);
   add_direct(methods, DirectSolver::Cholmod, "CHOLMOD",
              "the same by CHOLMOD's supernodal Cholesky; order of elimination kept", kNone);
-  add_direct(methods, DirectSolver::EigenCgIncompleteCholesky, "CG + incomplete Cholesky",
-             "the same by Eigen's conjugate gradients, preconditioned by incomplete Cholesky, from the step's first "
-             "velocity",
-             1e-3);
+  add_direct(
+      methods, DirectSolver::EigenCgIncompleteCholesky, "CG + incomplete Cholesky",
+      "the same by Eigen's conjugate gradients, preconditioned by incomplete Cholesky, from the step's first velocity",
+      1e-3);
   Method xpbd{"XPBD",
               "XPBD",
               false,

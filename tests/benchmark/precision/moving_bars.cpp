@@ -26,11 +26,9 @@ ProblemResult measure_vibration(bool quick) {
   result.text = fmt::format(
       "The cantilever of the first problem swings for two periods after its weight (1e-4 of the usual) is switched on. "
       "Truth: Timoshenko's frequency with shear and rotary inertia, {:.5f} Hz (Euler and Bernoulli: {:.5f}). The mesh "
-      "is "
-      "the greater part of the error: linear tetrahedra are too stiff in bending, and half the error of the stiffness "
-      "is the frequency's. What stops short of its equations (XPBD, projective dynamics) is too soft, and where both "
-      "errors "
-      "cancel looks better than it is.",
+      "is the greater part of the error: linear tetrahedra are too stiff in bending, and half the error of the "
+      "stiffness is the frequency's. What stops short of its equations (XPBD, projective dynamics) is too soft, and "
+      "where both errors cancel looks better than it is.",
       timoshenko_frequency({}), euler_bernoulli_frequency({}));
   std::vector<Method> methods = all_methods();
   for (Method& method : methods)
@@ -52,12 +50,11 @@ ProblemResult measure_drop(bool quick) {
   result.text =
       "The targets' bar (1 x 0.25 x 0.25 m, E = 1e6 Pa, nu = 0.4, 1000 kg/m^3) under its weight. Its clamped end falls "
       "freely, is slowed down (3 t^2 - 2 t^3) and stops after 10 frames of 24, 0.28 m lower; the bar swings on until "
-      "frame "
-      "14. Damping 0.1 / s of mass, none of stiffness, so that all methods solve one equation. Truth: the same mesh by "
-      "iterated Newmark in steps a quarter of the shortest; so this is the error of time alone. Small strain, smoothed "
-      "polar rotations and those of the paper are other materials and end at their difference. The stop is a jump in "
-      "the "
-      "acceleration of the pins, which sends a wave through the bar; no scheme has all of its second order there.";
+      "frame 14. Damping 0.1 / s of mass, none of stiffness, so that all methods solve one equation. Truth: the same "
+      "mesh by iterated Newmark in steps a quarter of the shortest; so this is the error of time alone. Small strain, "
+      "smoothed polar rotations and those of the paper are other materials and end at their difference. The stop is a "
+      "jump in the acceleration of the pins, which sends a wave through the bar; no scheme has all of its second order "
+      "there.";
   MotionProblem problem = drop_problem(quick ? 2 : 4, quick ? 5 : 6);
   problem.most_seconds = quick ? 0.5 : 6;
   Pace pace;
@@ -75,10 +72,8 @@ ProblemResult measure_settling(bool quick) {
       "settling", "A damped bar comes to rest: tip against the equilibrium of its own mesh", "", {}, {}, {}};
   result.text =
       "The targets' bar under its weight, damped by 16 / s of mass (about critical): after 2 s what is left of the "
-      "motion "
-      "is 1e-6. Truth: the same mesh's equilibrium to 1e-9, so that only the method's own idea of rest counts, and "
-      "what "
-      "its iterations leave undone.";
+      "motion is 1e-6. Truth: the same mesh's equilibrium to 1e-9, so that only the method's own idea of rest counts, "
+      "and what its iterations leave undone.";
   MotionProblem problem = settling_problem(quick ? 2 : 4);
   problem.most_seconds = quick ? 0.5 : 4;
   if (quick) problem.steps.pop_back();

@@ -46,7 +46,7 @@ std::string failures_of(const std::vector<WorkPoint>& points) {
     if (count.failed > 0)
       text += fmt::format(" {}: {} of {} runs failed ({}).", method, count.failed, count.runs, count.why);
     if (count.astray > 0)
-      text += fmt::format(" {}: {} of {} runs have an error above 1.", method, count.astray, count.runs);
+      text += fmt::format(" {}: {} of {} runs end with an error above 1.", method, count.astray, count.runs);
   }
   return text;
 }
@@ -66,11 +66,10 @@ void report_problem(const ProblemResult& result, Report& report) {
 void run_precision(const BenchOptions& options, Report& report) {
   report.say(
       "Error against processor time, from the mesh to the answer: making the solver and its factors is in it. Curves "
-      "are "
-      "fronts: of a method's runs over meshes, steps and tolerances those that no other of its runs beats in both. One "
-      "thread each. softreel runs with `dilatation = \"linear\"`, the material that everyone else has. `precision.tsv` "
-      "has "
-      "all runs.");
+      "are fronts: of a method's runs over meshes, steps and tolerances those that no other of its runs beats in both. "
+      "One thread each. softreel runs with `dilatation = linear`, the material that everyone else has. Runs in motion "
+      "that are expected to take longer than a few seconds (with `--quick` half a second) are left out, alike for all "
+      "methods; the table of costs says - where no run that was made is so right. `precision.tsv` has all runs.");
   std::vector<Method> methods = softreel_schemes();
   for (Method& method : softreel_variants()) methods.push_back(std::move(method));
   for (Method& method : rival_methods()) methods.push_back(std::move(method));
@@ -95,6 +94,10 @@ void run_precision(const BenchOptions& options, Report& report) {
   take(measure_drop(options.quick));
   take(measure_settling(options.quick));
   for (const ProblemResult& result : measure_creature(options.quick)) take(result);
+  report.add(cost_table("precision_cost", all));
+  report.say(
+      "Orders. One far above what is expected says that the longest of the three steps was still unstable; below it, "
+      "that the motion is not smooth (the drop) or that the steps are still long.");
   report.add(orders);
   write_tsv(point_table("precision", "All runs", all), report.folder() / "precision.tsv");
 }

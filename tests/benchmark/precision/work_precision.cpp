@@ -7,6 +7,9 @@
 namespace softreel::bench {
 namespace {
 
+/// Of the error before, for a point to be on the front: what is less is solver noise.
+constexpr double kWorthIt = 0.99;
+
 /// Distinct names in the order of their first use.
 std::vector<std::string> names_of(const std::vector<WorkPoint>& points, std::string WorkPoint::*name) {
   std::vector<std::string> names;
@@ -38,7 +41,7 @@ std::vector<WorkPoint> pareto_front(std::vector<WorkPoint> points) {
                    [](const WorkPoint& a, const WorkPoint& b) { return a.seconds < b.seconds; });
   std::vector<WorkPoint> front;
   for (const WorkPoint& point : points)
-    if (front.empty() || point.error < front.back().error) front.push_back(point);
+    if (front.empty() || point.error < kWorthIt * front.back().error) front.push_back(point);
   return front;
 }
 
@@ -94,6 +97,29 @@ Table point_table(const std::string& name, const std::string& title, const std::
   for (const WorkPoint& p : points)
     table.add({p.problem, p.method, p.tets, p.step, p.tolerance, p.seconds, p.value,
                p.failure.empty() ? Cell(p.error) : Cell("failed: " + p.failure)});
+  return table;
+}
+
+Table cost_table(const std::string& name, const std::vector<WorkPoint>& points) {
+  Table table{name,
+              "What an error costs: cpu seconds of the cheapest run that is at most so wrong",
+              {"problem", "curve", "10 %", "1 %", "0.1 %", "least error"},
+              {}};
+  for (const std::string& problem : names_of(points, &WorkPoint::problem)) {
+    const std::vector<WorkPoint> of_problem = points_of(points, &WorkPoint::problem, problem);
+    for (const std::string& curve : names_of(of_problem, &WorkPoint::curve)) {
+      const std::vector<WorkPoint> front = pareto_front(points_of(of_problem, &WorkPoint::curve, curve));
+      if (front.empty()) continue;
+      std::vector<Cell> row{problem, curve};
+      for (const double error : {0.1, 0.01, 0.001}) {
+        const auto at =
+            std::find_if(front.begin(), front.end(), [&](const WorkPoint& point) { return point.error <= error; });
+        row.emplace_back(at == front.end() ? kNone : at->seconds);
+      }
+      row.emplace_back(front.back().error);
+      table.add(std::move(row));
+    }
+  }
   return table;
 }
 
