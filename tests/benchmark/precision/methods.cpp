@@ -128,6 +128,13 @@ std::vector<Method> rival_methods() {
   return methods;
 }
 
+std::vector<Method> all_methods() {
+  std::vector<Method> methods = softreel_schemes();
+  for (Method& method : softreel_variants()) methods.push_back(std::move(method));
+  for (Method& method : rival_methods()) methods.push_back(std::move(method));
+  return methods;
+}
+
 Table method_table(const std::vector<Method>& methods) {
   Table table{
       "precision_methods", "The methods, and how each was tuned", {"method", "curve in plots", "what and how"}, {}};

@@ -33,6 +33,9 @@ std::vector<Method> softreel_variants();
 /// Other solvers of the same step, and other ways to animate.
 std::vector<Method> rival_methods();
 
+/// The three lists above, in this order.
+std::vector<Method> all_methods();
+
 /// One row a method: what it is and how it was tuned.
 Table method_table(const std::vector<Method>& methods);
 

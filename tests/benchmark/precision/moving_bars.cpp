@@ -8,13 +8,6 @@
 namespace softreel::bench {
 namespace {
 
-std::vector<Method> all_methods() {
-  std::vector<Method> methods = softreel_schemes();
-  for (Method& method : softreel_variants()) methods.push_back(std::move(method));
-  for (Method& method : rival_methods()) methods.push_back(std::move(method));
-  return methods;
-}
-
 void append(std::vector<WorkPoint>& points, const std::vector<WorkPoint>& more) {
   points.insert(points.end(), more.begin(), more.end());
 }

@@ -70,10 +70,7 @@ void run_precision(const BenchOptions& options, Report& report) {
       "One thread each. softreel runs with `dilatation = linear`, the material that everyone else has. Runs in motion "
       "that are expected to take longer than a few seconds (with `--quick` half a second) are left out, alike for all "
       "methods; the table of costs says - where no run that was made is so right. `precision.tsv` has all runs.");
-  std::vector<Method> methods = softreel_schemes();
-  for (Method& method : softreel_variants()) methods.push_back(std::move(method));
-  for (Method& method : rival_methods()) methods.push_back(std::move(method));
-  report.add(method_table(methods));
+  report.add(method_table(all_methods()));
 
   std::vector<WorkPoint> all;
   Table orders{"precision_orders",
