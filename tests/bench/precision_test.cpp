@@ -7,6 +7,7 @@
 
 #include "tests/benchmark/precision/bar_motions.h"
 #include "tests/benchmark/precision/beam_theory.h"
+#include "tests/benchmark/precision/calculix.h"
 #include "tests/benchmark/precision/static_answer.h"
 
 namespace softreel::bench {
@@ -63,6 +64,27 @@ TEST(Precision, NearsTimoshenkosCantileverWithTheSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3);
   // What the second order leaves over is small: extrapolated, the theory's tip.
   EXPECT_NEAR(fine - (coarse - fine) / 3, 0, 0.01);
+}
+
+TEST(Precision, AgreesWithCalculixOnTheSameMeshWhereStrainsAreSmall) {
+  if (!has_calculix()) GTEST_SKIP() << "ccx is not installed";
+  Bar bar = make_clamped_bar(3, 4, 0.25, {1e6, 0.4, 1000, 0, 0}, Clamped::LowEnd);
+  const std::vector<Index> tip = section_nodes(bar, bar.length);
+  const auto calculix_tip = [&] {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& u : solve_by_calculix(bar, CalculixElement::Linear, tip).displacements) sum += u;
+    return Vec3(sum / static_cast<double>(tip.size()));
+  };
+  // The materials differ by what is quadratic in the strain: a tenth of the load, a hundredth of the difference or so.
+  std::vector<double> differences;
+  for (const double gravity : {9.81, 0.981}) {
+    bar.model.gravity = Vec3(0, -gravity, 0);
+    const Vec3 ours = mean_displacement(bar, tip, find_static_answer(bar.model, uncapped_params()).positions);
+    differences.push_back((ours - calculix_tip()).norm() / ours.norm());
+  }
+  EXPECT_LT(differences[0], 0.02);
+  EXPECT_LT(differences[1], 1e-3);
+  EXPECT_LT(differences[1], 0.2 * differences[0]);
 }
 
 /// Distance of the tip from the elastica over its way.
