@@ -23,6 +23,9 @@ std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::size_t e) {
 /// Nothing nearer to the boundary than this share of the box's diagonal is taken for hidden.
 constexpr double kHiddenDepth = 1e-3;
 
+/// A smaller share of an area is what sums round off.
+constexpr double kRoundOff = 1e-9;
+
 double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
 }
@@ -43,7 +46,8 @@ void leave_out_caps(const SurfaceMesh& surface, const TriangleTree& tree, const 
   const HoleCaps caps(surface.positions, surface.triangles, tree);
   if (!caps.any() || boundary.empty() || deviation.from_boundary <= limit) return;
   const SurfaceMesh rest = caps.without_caps(nodes, boundary, limit, threads);
-  deviation.cap_share = 1 - area_of(rest.positions, rest.triangles) / area_of(nodes, boundary);
+  const double share = 1 - area_of(rest.positions, rest.triangles) / area_of(nodes, boundary);
+  deviation.cap_share = share > kRoundOff ? share : 0;
   deviation.from_boundary = farthest_distance(rest.positions, rest.triangles, tree, threads);
 }
 
