@@ -5,13 +5,13 @@
 #include <numeric>
 #include <optional>
 
-#include "core/mesh/mesh_topology.h"
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
 #include "core/tetmesh/farthest_point.h"
 #include "core/tetmesh/graded_octree.h"
 #include "core/tetmesh/graded_stuffing.h"
 #include "core/tetmesh/hidden_surface.h"
+#include "core/tetmesh/hole_caps.h"
 #include "core/tetmesh/surface_samples.h"
 
 namespace softreel {
@@ -39,9 +39,9 @@ constexpr double kFirstLimit = 1.5;
 constexpr int kErrorRounds = 40, kSingleRounds = 8;
 
 /// The widest gap is narrower than before if it is less than this share of it; after so many rounds without that there
-/// is an end, of closed and of open surfaces.
+/// is an end.
 constexpr double kNarrower = 0.97;
-constexpr int kPatience = 12, kOpenPatience = 2;
+constexpr int kPatience = 12;
 
 /// Pieces of at most this share of the elements are loose.
 constexpr double kLooseShare = 0.02;
@@ -56,9 +56,6 @@ constexpr double kNearlyKept = 1.3;
 
 /// How near to the wanted number is near enough.
 constexpr double kCountTolerance = 0.05;
-
-/// Nearer to a rim than this, in budgets, is on it.
-constexpr double kOnRim = 1e-6;
 
 /// Samples are this many budgets apart.
 constexpr double kSampleStep = 2.0;
@@ -84,8 +81,7 @@ double guess_error(const SurfaceMesh& surface, double tets) {
 class Filling {
  public:
   Filling(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads)
-      : surface_(surface),
-        params_(params),
+      : params_(params),
         threads_(threads),
         base_edge_(params.base_edge > 0 ? params.base_edge : kBaseEdge * params.error),
         error_(params.error > 0 ? params.error : base_edge_ / kBaseEdge),
@@ -94,7 +90,7 @@ class Filling {
         sampler_(surface.positions, surface.triangles, frame_),
         visible_(find_visible(surface, sampler_, error_, threads)),
         samples_(sample_surface(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)),
-        rims_(find_rims(surface)) {
+        caps_(surface.positions, surface.triangles, sampler_.tree()) {
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
       octree_.refine(corners(surface.positions, surface.triangles[t]), params.finer);
   }
@@ -110,13 +106,11 @@ class Filling {
       if (is_certain) gaps = find_gaps(filling.stuffed);
       filling.is_kept = gaps.empty();
       const double margin = round < kSingleRounds ? 0.0 : 0.5;
-      leave_out_holes(gaps);
       if (has_count(filling) && widest(gaps) < kNearlyKept * error_) break;
       if (!gaps.empty() && is_stuck(gaps, round)) break;
       if (round + 1 == rounds || refine(filling.stuffed, gaps, margin)) continue;
       // Samples that no size reaches hide what lies between others.
       if (!is_certain) gaps = find_gaps(filling.stuffed);
-      leave_out_holes(gaps);
       if (is_certain || !refine(filling.stuffed, gaps, 0.0)) break;
     }
     return filling;
@@ -151,14 +145,15 @@ class Filling {
     return params_.tets > 0 && std::abs(count / params_.tets - 1) <= kCountTolerance;
   }
 
-  /// Whether the widest gap has long been no narrower than before: no size mends it. A hole's cap is such a gap.
+  /// Whether the widest gap has long been no narrower than before: no size mends it. The rim of a hole can be such a
+  /// gap.
   bool is_stuck(const std::vector<BoundaryGap>& gaps, int round) {
     const double width = widest(gaps);
     if (width < kNarrower * narrowest_) {
       narrowest_ = width;
       narrowest_round_ = round;
     }
-    return round - narrowest_round_ > (rims_.empty() ? kPatience : kOpenPatience);
+    return round - narrowest_round_ > kPatience;
   }
 
   /// Small pieces beside the main ones hang by necks that are thinner than the tetrahedra: gaps as wide as they are.
@@ -201,7 +196,9 @@ class Filling {
     fit_params.sweeps = round < kFirstRounds ? kFirstSweeps : kSweeps;
     if (stuffed.mesh.tets.empty()) return everywhere();
     const BoundaryFit fitted(stuffed, sampler_.tree(), samples_, fit_params, threads_, &memory_);
-    return fitted.gaps((round < kFirstRounds ? kFirstLimit : kEnough) * error_);
+    std::vector<BoundaryGap> gaps = fitted.gaps((round < kFirstRounds ? kFirstLimit : kEnough) * error_);
+    leave_out_holes(gaps);
+    return gaps;
   }
 
   /// The whole surface, for a lattice that has no node inside.
@@ -211,8 +208,19 @@ class Filling {
     return gaps;
   }
 
+  /// No size brings the cap of a hole nearer to the surface.
   void leave_out_holes(std::vector<BoundaryGap>& gaps) const {
-    std::erase_if(gaps, [&](const BoundaryGap& gap) { return is_in_hole(gap); });
+    if (!caps_.any()) return;
+    std::erase_if(gaps, [&](const BoundaryGap& gap) { return gap.from_boundary && caps_.contain(gap.on_boundary); });
+  }
+
+  /// The faces of the boundary that have a surface to follow.
+  SurfaceMesh without_caps(const std::vector<Vec3>& nodes, const std::vector<Triangle>& faces) const {
+    if (caps_.any()) return caps_.without_caps(nodes, faces, kCertain * error_, threads_);
+    SurfaceMesh all;
+    all.positions = nodes;
+    all.triangles = faces;
+    return all;
   }
 
   /// All gaps, also between samples and inside faces.
@@ -226,40 +234,10 @@ class Filling {
       const TriangleTree::Nearest found = boundary.nearest(p);
       gaps.push_back({p, found.point, faces[at(found.triangle)]});
     }
-    for (const Vec3& p : find_far_points(stuffed.mesh.nodes, faces, sampler_.tree(), limit, threads_))
+    const SurfaceMesh followed = without_caps(stuffed.mesh.nodes, faces);
+    for (const Vec3& p : find_far_points(followed.positions, followed.triangles, sampler_.tree(), limit, threads_))
       gaps.push_back({sampler_.tree().nearest(p).point, p, faces[at(boundary.nearest(p).triangle)], true});
     return gaps;
-  }
-
-  /// Sides of triangles that an open surface ends at, three bits a triangle; empty if it is closed.
-  static std::vector<std::uint8_t> find_rims(const SurfaceMesh& surface) {
-    std::vector<std::uint8_t> rims(surface.triangles.size(), 0);
-    const std::vector<Triangle> welded = welded_triangles(surface);
-    const std::vector<HalfEdge> sides = sorted_half_edges(welded);
-    bool any = false;
-    for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
-      if (edge.size() != 1) return;
-      any = true;
-      const Triangle& triangle = welded[at(edge[0].triangle)];
-      for (std::size_t k = 0; k < 3; ++k)
-        if (triangle[k] != edge[0].low && triangle[k] != edge[0].high)
-          rims[at(edge[0].triangle)] |= static_cast<std::uint8_t>(1U << k);
-    });
-    if (!any) rims.clear();
-    return rims;
-  }
-
-  /// Whether a point of the boundary closes a hole: what is nearest to it is the hole's rim. No size mends that.
-  bool is_in_hole(const BoundaryGap& gap) const {
-    if (rims_.empty() || !gap.from_boundary) return false;
-    const TriangleTree::Nearest found = sampler_.tree().nearest(gap.on_boundary);
-    const std::array<Vec3, 3> x = corners(surface_.positions, surface_.triangles[at(found.triangle)]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      if ((rims_[at(found.triangle)] & (1U << k)) == 0) continue;
-      const Vec3 &a = x[(k + 1) % 3], &b = x[(k + 2) % 3];
-      if ((nearest_on_triangle(found.point, a, b, b) - found.point).norm() < kOnRim * error_) return true;
-    }
-    return false;
   }
 
   /// Halves the largest leaves at each gap, and those within `margin` of their width. False if there is none that may
@@ -287,7 +265,6 @@ class Filling {
     return octree_.cells().size() > before;
   }
 
-  const SurfaceMesh& surface_;
   const ErrorBudgetParams& params_;
   const Threads& threads_;
   double base_edge_, error_;
@@ -299,7 +276,7 @@ class Filling {
   SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap
   std::vector<Vec3> samples_;
   FitMemory memory_;
-  std::vector<std::uint8_t> rims_;
+  HoleCaps caps_;
   SurfaceDistance known_;  ///< of the filling before
 };
 

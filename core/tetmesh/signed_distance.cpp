@@ -23,24 +23,6 @@ constexpr double kMostRows = 1024;
 /// A lattice node with its distance, which is signed once it is known; nearest is -1 beyond the band.
 using KnownNode = BandNode;
 
-/// Whether every edge is used as often in one direction as in the other. Then winding numbers are integers, and the
-/// sign changes nowhere but at the surface.
-bool is_closed(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
-  const std::vector<Index> weld = weld_positions(positions);
-  KeyIndex edges;
-  std::vector<std::int32_t> balance;
-  for (const Triangle& triangle : triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto a = static_cast<std::uint64_t>(weld[static_cast<std::size_t>(triangle[k])]);
-      const auto b = static_cast<std::uint64_t>(weld[static_cast<std::size_t>(triangle[(k + 1) % 3])]);
-      if (a == b) continue;
-      const auto [edge, is_new] = edges.insert(std::min(a, b) << 32 | std::max(a, b));
-      if (is_new) balance.push_back(0);
-      balance[static_cast<std::size_t>(edge)] += a < b ? 1 : -1;
-    }
-  return std::all_of(balance.begin(), balance.end(), [](std::int32_t b) { return b == 0; });
-}
-
 /// Signs from the exact crossings of a closed surface; the inside beyond the band is appended.
 void sign_closed(std::vector<KnownNode>& nodes, LatticeNodeSet& known, const RowCrossings& crossings) {
   for (KnownNode& node : nodes)
@@ -90,7 +72,7 @@ SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::
   SurfaceDistance result;
   LatticeNodeSet& known = result.lattice.nodes;
   for (const KnownNode& node : nodes) known.insert(node.node);
-  if (is_closed(positions, triangles)) {
+  if (has_integer_windings(positions, triangles)) {
     sign_closed(nodes, known, RowCrossings(positions, triangles, frame));
     add_neighbors(nodes, known, [](std::size_t) {});
   } else {
@@ -113,7 +95,7 @@ SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::
 DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                  const LatticeFrame& frame)
     : frame_(frame), tree_(positions, triangles) {
-  if (!is_closed(positions, triangles)) {
+  if (!has_integer_windings(positions, triangles)) {
     winding_.emplace(positions, triangles);
     return;
   }

@@ -6,6 +6,7 @@
 
 #include "core/tetmesh/farthest_point.h"
 #include "core/tetmesh/hidden_surface.h"
+#include "core/tetmesh/hole_caps.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
@@ -22,8 +23,32 @@ std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::size_t e) {
 /// Nothing nearer to the boundary than this share of the box's diagonal is taken for hidden.
 constexpr double kHiddenDepth = 1e-3;
 
+/// A smaller share of an area is what sums round off.
+constexpr double kRoundOff = 1e-9;
+
 double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
+}
+
+double area_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  double area = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const Vec3& x = points[static_cast<std::size_t>(a)];
+    area += 0.5 * (points[static_cast<std::size_t>(b)] - x).cross(points[static_cast<std::size_t>(c)] - x).norm();
+  }
+  return area;
+}
+
+/// Measures the boundary again without the caps of holes, if there are any, where it is further away than `limit`.
+void leave_out_caps(const SurfaceMesh& surface, const TriangleTree& tree, const std::vector<Vec3>& nodes,
+                    const std::vector<Triangle>& boundary, double limit, const Threads& threads,
+                    SurfaceDeviation& deviation) {
+  const HoleCaps caps(surface.positions, surface.triangles, tree);
+  if (!caps.any() || boundary.empty() || deviation.from_boundary <= limit) return;
+  const SurfaceMesh rest = caps.without_caps(nodes, boundary, limit, threads);
+  const double share = 1 - area_of(rest.positions, rest.triangles) / area_of(nodes, boundary);
+  deviation.cap_share = share > kRoundOff ? share : 0;
+  deviation.from_boundary = farthest_distance(rest.positions, rest.triangles, tree, threads);
 }
 
 }  // namespace
@@ -83,8 +108,10 @@ SurfaceDeviation measure_deviation(const SurfaceMesh& surface, const TetMesh& me
   SurfaceDeviation deviation;
   deviation.from_boundary = farthest_distance(mesh.nodes, boundary, surface_tree, threads);
   deviation.from_surface = farthest_distance(surface.positions, surface.triangles, boundary_tree, threads);
+  const double diagonal = used_bounds(surface).diagonal();
+  leave_out_caps(surface, surface_tree, mesh.nodes, boundary, kHiddenDepth * diagonal, threads, deviation);
   // Distances of hidden pieces are a good share of the body's thickness; a surface that is followed has none such.
-  const double limit = std::max(deviation.from_boundary, kHiddenDepth * used_bounds(surface).diagonal());
+  const double limit = std::max(deviation.from_boundary, kHiddenDepth * diagonal);
   if (deviation.from_surface <= limit || boundary.empty()) return deviation;
   const std::vector<std::uint8_t> suspected =
       find_far_triangles(surface.positions, surface.triangles, boundary_tree, limit, threads);

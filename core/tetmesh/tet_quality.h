@@ -28,10 +28,12 @@ TetQuality measure_quality(const TetMesh& mesh, const Threads& threads);
 /// far as farthest_distance finds them. Vertices that no triangle uses do not count. Where pieces of the surface
 /// overlap, what has the solid on both sides is no boundary of it and is left out (hidden_surface.h); only triangles
 /// that are further away than any point of the boundary is from the surface are looked at for that, so that clean
-/// surfaces cost nothing.
+/// surfaces cost nothing. Where the boundary closes a hole of an open surface (hole_caps.h) it has no surface to
+/// follow, and is left out too.
 struct SurfaceDeviation {
   double from_surface = 0;   ///< largest distance of a point of the surface to the boundary of the mesh
   double from_boundary = 0;  ///< largest distance of a point of the boundary to the surface
+  double cap_share = 0;      ///< of the boundary's area: what closes holes and is not measured, 0 to 1
   double two_way() const { return from_surface > from_boundary ? from_surface : from_boundary; }
 };
 SurfaceDeviation measure_deviation(const SurfaceMesh& surface, const TetMesh& mesh, const Threads& threads);

@@ -30,4 +30,8 @@ class WindingNumber {
   std::vector<Dipole> dipoles_;  // per node of the tree
 };
 
+/// Whether every edge is used as often in one direction as in the other. Then winding numbers are integers, and they
+/// change nowhere but at the surface: it is closed.
+bool has_integer_windings(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);
+
 }  // namespace softreel

@@ -93,6 +93,7 @@ void print_tets_json(const InspectOptions& options, const TetFacts& facts) {
   if (facts.deviation) {
     json["distance"] = facts.deviation->two_way();
     json["distance_share_of_diagonal"] = facts.deviation->two_way() / facts.diagonal;
+    json["hole_share_of_boundary"] = facts.deviation->cap_share;
   }
   std::printf("%s\n", json_text(json).c_str());
 }
@@ -108,6 +109,8 @@ void print_tets_text(const InspectOptions& options, const TetFacts& facts) {
   if (facts.deviation)
     std::printf("  distance to %s: at most %.4g (%.3f %% of the box diagonal)\n", options.surface.c_str(),
                 facts.deviation->two_way(), 100 * facts.deviation->two_way() / facts.diagonal);
+  if (facts.deviation && facts.deviation->cap_share > 0)
+    std::printf("  %.2g %% of the boundary closes holes and is not measured\n", 100 * facts.deviation->cap_share);
 }
 
 void print_shown(const InspectOptions& options, const std::string& shown) {

@@ -74,6 +74,7 @@ std::string to_json(const TetrahedralizeOptions& options, const Result& result) 
   if (result.deviation) {
     json["distance"] = result.deviation->two_way();
     json["distance_share_of_diagonal"] = result.deviation->two_way() / used_bounds(result.surface).diagonal();
+    json["hole_share_of_boundary"] = result.deviation->cap_share;
   }
   json["repairs"] = result.repairs;
   json["seconds"] = result.seconds;
@@ -101,6 +102,8 @@ void print_text(const TetrahedralizeOptions& options, const Result& result) {
   if (result.deviation)
     std::printf("  distance to the surface: at most %.4g (%.3f %% of the box diagonal)\n", result.deviation->two_way(),
                 100 * result.deviation->two_way() / used_bounds(result.surface).diagonal());
+  if (result.deviation && result.deviation->cap_share > 0)
+    std::printf("  %.2g %% of the boundary closes holes and is not measured\n", 100 * result.deviation->cap_share);
   std::printf("  time: %s\n", format_duration(result.seconds).c_str());
 }
 
