@@ -3,8 +3,10 @@
 add_library(bench_parts STATIC
   bench.cpp
   report/machine.cpp report/plot.cpp report/report.cpp report/table.cpp
-  steppers/softreel_stepper.cpp)
-target_link_libraries(bench_parts PUBLIC bar_problem softreel_core fmt::fmt PRIVATE softreel_warnings)
+  steppers/softreel_stepper.cpp
+  stability/abuse_study.cpp stability/abuses.cpp stability/bar_body.cpp stability/body_picture.cpp stability/held_pose.cpp stability/pose_study.cpp stability/scramble_study.cpp stability/stability.cpp stability/watch.cpp
+  "${PROJECT_SOURCE_DIR}/tests/support/scrambled.cpp")
+target_link_libraries(bench_parts PUBLIC bar_problem softreel_core fmt::fmt PRIVATE softreel_tool softreel_warnings)
 target_include_directories(bench_parts PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(bench_parts PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 softreel_precompile(bench_parts ${SOFTREEL_COMMON_HEADERS})

@@ -2,6 +2,8 @@
 
 #include <ctime>
 
+#include "tests/benchmark/stability/stability.h"
+
 namespace softreel::bench {
 namespace {
 
@@ -14,7 +16,8 @@ double seconds_of(clockid_t clock) {
 }  // namespace
 
 std::span<const Benchmark> benchmarks() {
-  static const std::vector<Benchmark> all;
+  static const std::vector<Benchmark> all{
+      {"stability", "scrambled, stretched, twisted and abused bodies, by every rotation method", run_stability}};
   return all;
 }
 
