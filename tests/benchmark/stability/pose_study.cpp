@@ -22,7 +22,7 @@ std::vector<double> stretches_for(bool quick) {
   return {1.25, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 8, 10, 12, 14, 16, 18, 20};
 }
 
-/// The bar that most of flutter shows on: at the stretch nearest to `stretch`.
+/// The pose nearest to `stretch`; null if there is none.
 const HeldPose* pose_at(const std::vector<HeldPose>& poses, double stretch) {
   const HeldPose* nearest = nullptr;
   for (const HeldPose& pose : poses)
@@ -34,9 +34,7 @@ void add_row_picture(Report& report, const BarBody& bar, const std::vector<const
                      const std::string& name, const std::string& caption) {
   const BodyModel model = make_cantilever_model(bar);
   std::vector<PosedBody> bodies;
-  for (const HeldPose* pose : poses)
-    if (pose != nullptr) bodies.push_back({&model.mesh, pose->positions, bodies.empty() ? kBlue : kRust});
-  if (bodies.empty()) return;
+  for (const HeldPose* pose : poses) bodies.push_back({&model.mesh, pose->positions, bodies.empty() ? kBlue : kRust});
   add_body_picture(report, in_a_row(std::move(bodies), -Vec3::UnitY(), 0.15), Vec3::UnitZ(), name, "1100x420", caption);
 }
 
@@ -84,9 +82,12 @@ void study_stretch(const BenchOptions& options, Report& report) {
     }
     report.add(plot);
   }
-  add_row_picture(report, bar, shown, "stability_stretch.png",
-                  "Stretched six times by the default rotation: with the cap (blue, at rest) and without it (red: one "
-                  "frame of a flutter that does not end). The paper's figure 4.");
+  if (shown.size() == 2 && shown[0] != nullptr && shown[1] != nullptr)
+    add_row_picture(
+        report, bar, shown, "stability_stretch.png",
+        fmt::format("Stretched six times by the default rotation: with the cap (blue, {:.3g} degrees a step) "
+                    "and without it (red, {:.3g}). The paper's figure 4.",
+                    shown[0]->flutter, shown[1]->flutter));
   report.add(table);
 }
 
@@ -161,11 +162,11 @@ void study_twist(const BenchOptions& options, Report& report) {
   report.add(plot);
   std::vector<const HeldPose*> shown;
   for (const auto& poses : last) shown.push_back(&poses.front());
-  add_row_picture(
-      report, bar, shown, "stability_twist.png",
-      fmt::format("After {} turns of the right end: the default rotation (blue) and qr (red), which has let "
-                  "go of most of them.",
-                  turns));
+  if (shown.size() == 2)
+    add_row_picture(report, bar, shown, "stability_twist.png",
+                    fmt::format("After {} turns of the right end: the default rotation (blue) holds {:.0f} of them, qr "
+                                "(red) {:.0f}. The paper's figure 5 shows large deformations like these.",
+                                turns, shown[0]->held, shown[1]->held));
   report.add(table);
 }
 
