@@ -134,16 +134,31 @@ void StaticSolver::measure_scales(StaticState& state) const {
       errors[node] += shape.volume * greatest_modulus(body.laws[e]) * gradient.norm() * strain_error;
     }
   }
-  double scale = 0, error = 0;
+  // What rounding its point and its target does to a spring's force. The force itself is no scale: stiff pulls that
+  // work against each other would hide all others.
+  for (const ActivePull& pull : pulls_) {
+    const double factor = pull_factor(pull, state.positions);
+    for (const Spring& spring : pull.springs) {
+      double size = spring.target.norm();
+      for (std::size_t k = 0; k < 4; ++k)
+        size += std::abs(spring.weights[k]) * state.positions[static_cast<std::size_t>(spring.nodes[k])].norm();
+      for (std::size_t k = 0; k < 4; ++k)
+        errors[static_cast<std::size_t>(spring.nodes[k])] +=
+            std::numeric_limits<double>::epsilon() * factor * spring.stiffness * std::abs(spring.weights[k]) * size;
+    }
+  }
+  double scale = 0, error = 0, work = 0;
   for (std::size_t i = 0; i < magnitudes.size(); ++i) {
     double magnitude = magnitudes[i] + parts_.masses.mass[i] * parts_.model.gravity.norm();
     if (potential_ != nullptr) {
       magnitude += step_forces_[i].norm();
       errors[i] += std::numeric_limits<double>::epsilon() * potential_->weights[i] * state.positions[i].norm();
     }
+    work += magnitude * state.positions[i].norm();  // of all forces, over a move as long as the node is far
     scale += magnitude * magnitude;
     error += errors[i] * errors[i];
   }
+  state.energy_noise += 4 * std::numeric_limits<double>::epsilon() * work;
   state.scale = std::sqrt(scale);
   state.round_off = std::sqrt(error);
 }
@@ -184,7 +199,8 @@ bool StaticSolver::solve_direction(const StaticState& state, double tolerance, i
     if (held_[i] != 0) direction[i].setZero();
   remove_rigid_motion(parts_.pieces, held_pieces_, parts_.masses.mass, state.positions, direction);
   // An unfinished solve is a direction, too, if it got nearer; one that met negative curvature may be far off.
-  const bool nearer = report.ok() || (report.status == SolveStatus::MaxIterations && report.residual < kNearer);
+  // So may one that ends at round-off: directions that grow without bound raise what counts as round-off with them.
+  const bool nearer = report.status != SolveStatus::Breakdown && report.residual < kNearer;
   return nearer && is_positive(dot(direction, state.forces));
 }
 
@@ -340,9 +356,9 @@ SolveReport StaticSolver::solve(StaticState& state, std::span<const Vec3> target
     const double relative = state.residual / state.scale;
     const double linear =
         std::clamp(std::max(0.1 * relative, 0.3 * tolerance / relative), kBestLinearTolerance, kWorstLinearTolerance);
-    if (!find_direction(state, linear, direction)) return finish(SolveStatus::Breakdown);
-    if (is_negligible(direction, state.positions)) return finish(SolveStatus::RoundOff);
-    if (!search_line(state, direction))
+    const bool has_direction = find_direction(state, linear, direction);
+    if (has_direction && is_negligible(direction, state.positions)) return finish(SolveStatus::RoundOff);
+    if (!has_direction || !search_line(state, direction))
       return finish(state.residual <= 100 * state.round_off ? SolveStatus::RoundOff : SolveStatus::Breakdown);
   }
   return finish(state.residual <= tolerance * state.scale ? SolveStatus::Converged : SolveStatus::MaxIterations);

@@ -16,7 +16,7 @@ struct StaticState {
   std::vector<Quaternion> rotations;
   std::vector<Vec3> forces;  ///< unbalanced, N; zero on held nodes
   double energy = 0;         ///< elastic, gravity, pulls and the step's potential, J
-  double energy_noise = 0;   ///< round-off of energy, J
+  double energy_noise = 0;   ///< round-off of energy, that of positions included, J
   double residual = 0;       ///< norm of forces
   double scale = 0;          ///< norm over nodes of the summed magnitudes of the forces that balance there
   double round_off = 0;      ///< residual that the rounding of positions alone explains

@@ -7,9 +7,13 @@ add_library(bench_parts STATIC
   precision/bar_models.cpp precision/bar_motions.cpp precision/bar_statics.cpp precision/beam_theory.cpp
   precision/calculix.cpp precision/creature.cpp precision/methods.cpp precision/motion.cpp precision/moving_bars.cpp
   precision/precision.cpp precision/static_answer.cpp precision/work_precision.cpp
+  stability/abuse_study.cpp stability/abuses.cpp stability/bar_body.cpp stability/body_picture.cpp
+  stability/held_pose.cpp stability/pose_study.cpp stability/scramble_study.cpp stability/stability.cpp
+  stability/watch.cpp "${PROJECT_SOURCE_DIR}/tests/support/scrambled.cpp"
   steppers/descent_memory.cpp steppers/direct_stepper.cpp steppers/projective_stepper.cpp steppers/rival_body.cpp
   steppers/softreel_stepper.cpp steppers/xpbd_stepper.cpp)
-target_link_libraries(bench_parts PUBLIC bar_problem rivals softreel_core fmt::fmt PRIVATE softreel_warnings)
+target_link_libraries(bench_parts PUBLIC bar_problem rivals softreel_core fmt::fmt
+                      PRIVATE softreel_tool softreel_warnings)
 target_include_directories(bench_parts PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(bench_parts PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 softreel_precompile(bench_parts ${SOFTREEL_COMMON_HEADERS})

@@ -4,6 +4,7 @@
 
 #include "tests/benchmark/limits/limits.h"
 #include "tests/benchmark/precision/precision.h"
+#include "tests/benchmark/stability/stability.h"
 
 namespace softreel::bench {
 namespace {
@@ -19,6 +20,7 @@ double seconds_of(clockid_t clock) {
 std::span<const Benchmark> benchmarks() {
   static const std::vector<Benchmark> all{
       {"precision", "Error against processor time, beside rivals and theory", run_precision},
+      {"stability", "Bodies scrambled, stretched, twisted and abused, by every rotation method", run_stability},
       {"limits", "What bounds the accuracy: locking of linear tetrahedra, and its remedies", run_limits},
   };
   return all;

@@ -102,6 +102,10 @@ double distance_from_rigid(const std::vector<Vec3>& rest, const std::vector<Vec3
   return greatest;
 }
 
+bool is_back(const std::vector<Vec3>& rest, const std::vector<Vec3>& positions) {
+  return distance_from_rigid(rest, positions) <= kBack * size_of(rest);
+}
+
 Release release(BodyModel model, const Scramble& scramble, RotationMethod rotation, bool recovery, int seed,
                 int most_steps) {
   const Threads threads(1);
@@ -122,7 +126,7 @@ Release release(BodyModel model, const Scramble& scramble, RotationMethod rotati
     if (!report.ok()) throw std::runtime_error("a step was not solved: " + report.culprit);
     result.most_elements = std::max(result.most_elements, report.recovery.elements);
     result.steps = step;
-    if (distance_from_rigid(rest, simulator.state().positions) > kBack * size_of(rest)) continue;
+    if (!is_back(rest, simulator.state().positions)) continue;
     result.came_back = true;
     break;
   }

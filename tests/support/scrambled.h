@@ -34,6 +34,9 @@ struct Release {
 Release release(BodyModel model, const Scramble& scramble, RotationMethod rotation, bool recovery, int seed,
                 int most_steps);
 
+/// True if `positions` are the rest shape up to a rigid motion, within 1e-3 of its size.
+bool is_back(const std::vector<Vec3>& rest, const std::vector<Vec3>& positions);
+
 /// Greatest distance of `positions` from the rigid motion of `rest` that fits best.
 double distance_from_rigid(const std::vector<Vec3>& rest, const std::vector<Vec3>& positions);
 

@@ -177,6 +177,33 @@ TEST(Render, AStepThatCannotBeSolvedNamesFrameBodyAndElementAndKeepsTheFramesBef
   EXPECT_FALSE(exists(folder + "/out/ball.0002.png"));
 }
 
+TEST(Render, APullWithoutBoundNamesFrameBodyAndElementAndKeepsTheFramesBefore) {
+  const std::string folder = shot_folder("boundless");
+  const std::string more = "--quiet --set 'gravity.acceleration=[0,0,0]' --set body.ball.pull[0].stiffness=";
+  const Outcome outcome = run(fmt::format("softreel render {0}/shot.toml --output {0}/out {1}1e200", folder, more));
+  EXPECT_EQ(outcome.status, 1);
+  for (const char* part : {"frame 2", "\"ball\"", "element", "has a force that is not finite", "Accepted"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << part << "\n" << outcome.err;
+  EXPECT_TRUE(exists(folder + "/out/ball.0001.png"));
+  EXPECT_FALSE(exists(folder + "/out/ball.0002.png"));
+  // Far beyond every material, but with forces that are numbers: that is a pin, nearly.
+  EXPECT_EQ(run(fmt::format("softreel simulate {0}/shot.toml --output {0}/stiff {1}1e30", folder, more)).status, 0);
+}
+
+TEST(Render, PinsThatTurnABodyInsideOutInOneFrameAreFollowed) {
+  const std::string folder = shot_folder("inverted");
+  write_text(folder + "/shot.toml", sphere_shot(R"(
+[[body.ball.pin]]
+select = { box = { min = [0, 0.8, 0], max = [1, 1, 1] }, unit = "box" }
+keys = [ { frame = 2, ease = "constant" }, { frame = 3, translate = [0, -3, 0], scale = [1, -1, 1] } ]
+)"));
+  for (const char* linearize : {"auto", "iterated"}) {
+    const Outcome outcome = run(fmt::format(
+        "softreel simulate {0}/shot.toml --output {0}/{1} --quiet --set solver.linearize={1}", folder, linearize));
+    EXPECT_EQ(outcome.status, 0) << linearize << ": " << outcome.err;
+  }
+}
+
 TEST(Render, StaticFramesThatAreEqualAreTracedOnce) {
   const std::string folder = shot_folder("static");
   const json report = render(folder, folder + "/out",
