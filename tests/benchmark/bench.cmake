@@ -7,6 +7,7 @@ add_library(bench_parts STATIC
   precision/bar_models.cpp precision/bar_motions.cpp precision/bar_statics.cpp precision/beam_theory.cpp
   precision/calculix.cpp precision/creature.cpp precision/methods.cpp precision/motion.cpp precision/moving_bars.cpp
   precision/precision.cpp precision/static_answer.cpp precision/work_precision.cpp
+  scale/scale.cpp
   stability/abuse_study.cpp stability/abuses.cpp stability/bar_body.cpp stability/body_picture.cpp
   stability/held_pose.cpp stability/pose_study.cpp stability/scramble_study.cpp stability/stability.cpp
   stability/watch.cpp "${PROJECT_SOURCE_DIR}/tests/support/scrambled.cpp"
@@ -20,3 +21,9 @@ softreel_precompile(bench_parts ${SOFTREEL_COMMON_HEADERS})
 
 add_executable(softreel_bench bench_main.cpp)
 target_link_libraries(softreel_bench PRIVATE bench_parts softreel_warnings)
+
+# Its points of scale are processes of their own.
+add_executable(scale_point scale_point.cpp)
+target_link_libraries(scale_point PRIVATE bar_problem softreel_core softreel_warnings fmt::fmt)
+target_compile_definitions(scale_point PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+add_dependencies(softreel_bench scale_point)

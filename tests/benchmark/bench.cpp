@@ -4,6 +4,7 @@
 
 #include "tests/benchmark/limits/limits.h"
 #include "tests/benchmark/precision/precision.h"
+#include "tests/benchmark/scale/scale.h"
 #include "tests/benchmark/stability/stability.h"
 
 namespace softreel::bench {
@@ -21,6 +22,7 @@ std::span<const Benchmark> benchmarks() {
   static const std::vector<Benchmark> all{
       {"precision", "Error against processor time, beside rivals and theory", run_precision},
       {"stability", "Bodies scrambled, stretched, twisted and abused, by every rotation method", run_stability},
+      {"scale", "Time and memory from a thousand to ten million tetrahedra, on one thread and two", run_scale},
       {"limits", "What bounds the accuracy: locking of linear tetrahedra, and its remedies", run_limits},
   };
   return all;
