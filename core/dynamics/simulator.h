@@ -32,9 +32,9 @@ struct NewmarkParams {
 
 /// How often a step linearises, and where it takes rotations and forces (design 4.4). Keyed as above.
 enum class Linearize {
-  Auto,       ///< Start for Euler, else Predictor
+  Auto,       ///< Start for Euler, Predictor for BDF2, Iterated for Newmark, which damps nothing that one solve leaves
   Start,      ///< once, at the step's start, as in the paper: of first order, whatever the integrator
-  Predictor,  ///< once, at x + h v + h^2 a / 2 (Euler, which knows no a: x + h v): keeps the integrator's order
+  Predictor,  ///< once, where the step should end (linearization_positions): keeps the integrator's order
   Iterated    ///< Newton with line search until all forces balance at the step's end
 };
 

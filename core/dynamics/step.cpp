@@ -116,7 +116,7 @@ void begin_step(Simulator::Parts& parts, StepWork& work, double h) {
   work.step = begin_time_step(parts.params, state, h);
   work.velocities = work.step.base_velocities;
   const bool at_start = linearization(parts.params) == Linearize::Start;
-  work.positions = at_start ? state.positions : predict_positions(parts.params, state, h);
+  work.positions = at_start ? state.positions : linearization_positions(parts.params, state, h);
   const bool euler_at_start = at_start && parts.params.integrator == Integrator::Euler;
   for (std::size_t i = 0; i < parts.nodes(); ++i) {
     if (work.pinned.held[i] == 0) continue;

@@ -104,9 +104,28 @@ std::vector<Vec3> predict_positions(const SolverParams& params, const Simulation
   return predicted;
 }
 
+std::vector<Vec3> linearization_positions(const SolverParams& params, const SimulationState& state, double h) {
+  if (params.integrator != Integrator::Newmark || !has_memory(params, state) || state.previous_accelerations.empty())
+    return predict_positions(params, state, h);
+  const double beta = params.newmark.beta, gamma = params.newmark.gamma, last = state.previous_seconds;
+  std::vector<Vec3> positions = state.positions;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    positions[i] += h * (state.velocities[i] + last * ((beta - gamma) * state.accelerations[i] +
+                                                       (gamma - 0.5 - beta) * state.previous_accelerations[i]));
+  return positions;
+}
+
 Linearize linearization(const SolverParams& params) {
   if (params.linearize != Linearize::Auto) return params.linearize;
-  return params.integrator == Integrator::Euler ? Linearize::Start : Linearize::Predictor;
+  switch (params.integrator) {
+    case Integrator::Euler:
+      return Linearize::Start;
+    case Integrator::Bdf2:
+      return Linearize::Predictor;
+    case Integrator::Newmark:
+      break;
+  }
+  return Linearize::Iterated;
 }
 
 double estimate_error(const SolverParams& params, const SimulationState& state, double h,

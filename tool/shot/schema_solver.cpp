@@ -91,7 +91,7 @@ void add_time_stepping(Table<Shot>& t) {
            "",
            "dynamic: a step's one solve takes rotations and forces at its \"start\" (of first order) or at the "
            "\"predictor\" of its end (keeps second order); \"iterated\" solves until forces balance at its end. "
-           "\"auto\" is \"start\" for \"euler\", else \"predictor\".")
+           "\"auto\" is \"start\" for \"euler\", \"predictor\" for \"bdf2\", \"iterated\" for \"newmark\".")
       .add("substeps", of_solver(&P::substeps), whole<int>(1, 10000), "per frame",
            "Steps of time in a frame; with step_error, the fewest.")
       .add("step_error", of_solver(&P::step_error), number({0, 1}), "",

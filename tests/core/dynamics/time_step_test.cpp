@@ -341,5 +341,41 @@ TEST(TimeStep, FallsAsTheIntegratorSays) {
   }
 }
 
+/// The bar of the performance targets under its weight for a second from rest: how far any node gets from the origin.
+double farthest_swing(Linearize linearize, int steps) {
+  BodyModel model = body_model(test_support::make_bar(3), {1e6, 0.4, 1000, 0.1, 0.002});
+  model.pins = {testing::make_pin(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() < 1e-9; }))};
+  SolverParams params;
+  params.integrator = Integrator::Newmark;
+  params.linearize = linearize;
+  params.tolerance = 1e-6;
+  Bench bench(std::move(model), params);
+  double farthest = 0;
+  for (int s = 1; s <= steps; ++s) {
+    if (!bench.simulator.step(24.0 * s / steps, 1.0 / steps).ok()) return INFINITY;
+    for (const Vec3& x : bench.simulator.state().positions) farthest = std::max(farthest, x.norm());
+  }
+  return farthest;
+}
+
+TEST(Newmark, OneSolveAStepSwingsNoFartherThanIteratedSteps) {
+  const double iterated = farthest_swing(Linearize::Iterated, 96);
+  for (const int steps : {24, 48, 96}) {
+    EXPECT_NEAR(farthest_swing(Linearize::Predictor, steps), iterated, 0.02) << steps << " steps a second";
+    EXPECT_NEAR(farthest_swing(Linearize::Start, steps), iterated, 0.02) << steps << " steps a second";
+  }
+}
+
+TEST(Linearization, OfAnIntegratorIsTheCheapestThatIsSafeWithIt) {
+  const auto automatic = [](Integrator integrator) {
+    SolverParams params;
+    params.integrator = integrator;
+    return linearization(params);
+  };
+  EXPECT_EQ(automatic(Integrator::Euler), Linearize::Start);
+  EXPECT_EQ(automatic(Integrator::Bdf2), Linearize::Predictor);
+  EXPECT_EQ(automatic(Integrator::Newmark), Linearize::Iterated);
+}
+
 }  // namespace
 }  // namespace softreel
