@@ -66,7 +66,7 @@ std::string curve(const Series& series, std::size_t index, std::size_t& ours, st
 std::string script_of(const Plot& plot, const std::vector<const Series*>& drawn) {
   std::string script = fmt::format("datafile = '{}.dat'\n", plot.name);
   script += "set encoding utf8\nset grid lc rgb '#dddddd'\nset border 3 lc rgb '#444444'\nset tics nomirror\n";
-  script += "set key outside right top samplen 2 spacing 1.15\n";
+  script += "set key outside right top samplen 4 spacing 1.15\n";
   script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(plot.title), quoted(plot.x_label),
                         quoted(plot.y_label));
   if (plot.log_x) script += "set logscale x\nset format x '%g'\n";
