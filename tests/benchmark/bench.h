@@ -9,10 +9,9 @@
 
 namespace softreel::bench {
 
-/// How much is measured, and where it goes.
+/// How much is measured. Everything runs on one thread, in processor time, but for what a section says of itself.
 struct BenchOptions {
   bool quick = false;  ///< smaller meshes, fewer seeds: all of them together within 3 minutes on 2 cores
-  int threads = 1;     ///< of what is measured; times on one thread are processor times
 };
 
 /// A sub-benchmark: fills a section of the report. Throws std::exception if it could not measure.

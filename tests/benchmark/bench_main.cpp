@@ -21,7 +21,7 @@ struct Arguments {
 
 void print_usage(std::FILE* to) {
   fmt::print(to,
-             "softreel_bench [NAME ...] [--quick] [--threads N] [--output DIR] [--list]\n\n"
+             "softreel_bench [NAME ...] [--quick] [--output DIR] [--list]\n\n"
              "Measures, and writes tables, plots and one page to DIR (default out/bench). Names, default all:\n");
   for (const Benchmark& benchmark : benchmarks()) fmt::print(to, "  {:<12} {}\n", benchmark.name, benchmark.summary);
 }
@@ -39,19 +39,6 @@ const Benchmark& benchmark_named(const std::string& name) {
   throw UsageError(fmt::format("bench: {} is no benchmark; accepted: {}", name, names));
 }
 
-int threads_of(const std::string& text) {
-  std::size_t used = 0;
-  int threads = 0;
-  try {
-    threads = std::stoi(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used == 0 || used != text.size() || threads < 1 || threads > 4096)
-    throw UsageError(fmt::format("bench: --threads {}: accepted: 1 to 4096", text));
-  return threads;
-}
-
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
   for (int i = 1; i < argc; ++i) {
@@ -62,12 +49,10 @@ Arguments parse(int argc, char** argv) {
     };
     if (argument == "--quick")
       arguments.options.quick = true;
-    else if (argument == "--threads")
-      arguments.options.threads = threads_of(value());
     else if (argument == "--output")
       arguments.output = value();
     else if (argument.starts_with("-"))
-      throw UsageError(fmt::format("bench: {}: accepted: --quick, --threads N, --output DIR, --list", argument));
+      throw UsageError(fmt::format("bench: {}: accepted: --quick, --output DIR, --list", argument));
     else
       arguments.chosen.push_back(&benchmark_named(argument));
   }

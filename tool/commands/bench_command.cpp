@@ -29,7 +29,7 @@ int run_bench(const BenchCommandOptions& options) {
         "-DSOFTREEL_BUILD_BENCHMARKS=ON; tool/run bench builds and starts it.");
   std::vector<std::string> arguments{program.string()};
   arguments.insert(arguments.end(), options.names.begin(), options.names.end());
-  arguments.insert(arguments.end(), {"--threads", std::to_string(options.threads), "--output", options.output});
+  arguments.insert(arguments.end(), {"--output", options.output});
   if (options.quick) arguments.emplace_back("--quick");
   if (options.list) arguments.emplace_back("--list");
   const int status = run_process(arguments, nullptr);

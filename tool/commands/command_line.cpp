@@ -223,11 +223,8 @@ void add_bench_command(CLI::App& app, Parsed& parsed, Runner& run) {
       app.add_subcommand("bench", "measure run time against error beside rivals, and stability; a report");
   BenchCommandOptions& options = parsed.bench;
   bench->add_option("names", options.names, "sub-benchmarks [all; see --list]")->option_text("NAME ...");
-  bench->add_flag("--quick", options.quick, "smaller meshes, fewer seeds: within 3 minutes instead of 30");
+  bench->add_flag("--quick", options.quick, "smaller meshes, fewer seeds: within 3 minutes");
   bench->add_flag("--list", options.list, "print the sub-benchmarks and measure nothing");
-  bench->add_option("--threads", options.threads, "threads of what is measured; 1: processor time [1]")
-      ->option_text("N")
-      ->check(CLI::Range(1, 1024));
   bench->add_option("--output", options.output, "folder for tables, plots and index.html [out/bench]")
       ->option_text("DIR");
   bench->callback([&] { run = [&parsed] { return run_bench(parsed.bench); }; });

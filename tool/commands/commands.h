@@ -93,7 +93,6 @@ int run_tetrahedralize(const TetrahedralizeOptions& options);
 struct BenchCommandOptions {
   std::vector<std::string> names;  ///< of sub-benchmarks; empty: all
   std::string output = "out/bench";
-  int threads = 1;
   bool quick = false, list = false;
 };
 

@@ -2,11 +2,14 @@
 
 #include <ctime>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
-#include <Eigen/Core>
 #include <fmt/format.h>
 #include <sys/utsname.h>
+
+#include "tool/report/run_report.h"
+#include "tool/stages/process.h"
 
 namespace softreel::bench {
 namespace {
@@ -38,6 +41,16 @@ std::string load() {
   return file >> one ? one : "unknown";
 }
 
+/// The first line with words that a program says of itself.
+std::string first_line_of(const std::vector<std::string>& command) {
+  std::string said;
+  if (run_process(command, &said) < 0) return "not found";
+  std::istringstream lines(said);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find_first_not_of(" \t") != std::string::npos) return line;
+  return "says nothing of its version";
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> describe_machine() {
@@ -47,15 +60,10 @@ std::vector<std::pair<std::string, std::string>> describe_machine() {
           {"Cores", std::to_string(std::thread::hardware_concurrency())},
           {"Memory", line_of("/proc/meminfo", "MemTotal")},
           {"System", fmt::format("{}, Linux {}", line_of("/etc/os-release", "PRETTY_NAME"), system.release)},
-          {"Compiler", fmt::format("{} {}",
-#ifdef __clang__
-                                   "clang",
-#else
-                                   "g++",
-#endif
-                                   __VERSION__)},
-          {"Eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
-          {"Other jobs", fmt::format("load average {} before the start", load())},
+          {"softreel", version_text()},
+          {"gnuplot", first_line_of({"gnuplot", "--version"})},
+          {"CalculiX", first_line_of({"ccx", "-v"})},
+          {"Other jobs", fmt::format("load average {} at the end, this program included", load())},
           {"Date", today()}};
 }
 

@@ -7,7 +7,7 @@
 
 namespace softreel::bench {
 
-/// Name and value: processor, cores, memory, system, compiler, libraries, date.
+/// Name and value: processor, cores, memory, system, versions, load, date.
 std::vector<std::pair<std::string, std::string>> describe_machine();
 
 }  // namespace softreel::bench

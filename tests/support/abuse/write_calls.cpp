@@ -22,8 +22,8 @@ ssize_t write_through(int fd, std::size_t size, Transfer transfer) {
     std::size_t size;
   } half{transfer, size / 2};
   const auto write_half = [](void* context) {
-    const Half& todo = *static_cast<Half*>(context);
-    (void)todo.transfer(todo.size);
+    const Half& first = *static_cast<Half*>(context);
+    (void)first.transfer(first.size);
   };
   const std::size_t taken = abuse::writable(fd, size, write_half, &half);
   return taken == 0 && size > 0 ? -1 : transfer(taken);
