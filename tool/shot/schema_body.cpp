@@ -135,7 +135,9 @@ void add_placement_fields(Table<BodySettings>& t) {
            "Makes the worst angles of the tetrahedra better, for some seconds more.")
       .add("thickness", &B::thickness, absent_if_zero(number(kPositive)), "m",
            "Of open sheets in the surface, which then become solid.",
-           "open parts count as closed where they nearly are");
+           "open parts count as closed where they nearly are")
+      .add("rotation", &B::rotation, optional_of(rotation_method()), "",
+           "Of this body's tetrahedra, so that bodies of two methods can be seen side by side.", "solver.rotation");
 }
 
 void check_body(const Place& place, const TomlValue& value, BodySettings& body) {

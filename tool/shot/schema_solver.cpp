@@ -54,14 +54,7 @@ auto of_multigrid(auto member) {
 }
 
 void add_material_law(Table<Shot>& t) {
-  t.add("rotation", of_solver(&P::rotation),
-        choice<RotationMethod>({{"consistent", RotationMethod::Consistent},
-                                {"energy", RotationMethod::Energy},
-                                {"paper", RotationMethod::Paper},
-                                {"polar_smooth", RotationMethod::PolarSmooth},
-                                {"qr", RotationMethod::Qr},
-                                {"none", RotationMethod::None}}),
-        "",
+  t.add("rotation", of_solver(&P::rotation), rotation_method(), "",
         "Of each tetrahedron: polar, by the paper's energy safely or by its bare Newton, polar averaged over "
         "neighbours, Gram-Schmidt (depends on the order of nodes), or none (small strain only).")
       .add("dilatation", of_solver(&P::dilatation),
@@ -147,6 +140,15 @@ void add_multigrid(Table<Shot>& t) {
 }
 
 }  // namespace
+
+Codec<RotationMethod> rotation_method() {
+  return choice<RotationMethod>({{"consistent", RotationMethod::Consistent},
+                                 {"energy", RotationMethod::Energy},
+                                 {"paper", RotationMethod::Paper},
+                                 {"polar_smooth", RotationMethod::PolarSmooth},
+                                 {"qr", RotationMethod::Qr},
+                                 {"none", RotationMethod::None}});
+}
 
 const Table<Shot>& solver_table() {
   static const Table<Shot> table = [] {

@@ -13,6 +13,8 @@ const Table<BodySettings>& body_table();
 const Table<MaterialSettings>& material_table();
 
 const Table<Shot>& solver_table();
+/// The ways to find the rotations of elements, by name.
+Codec<RotationMethod> rotation_method();
 
 const Table<CameraSettings>& camera_table();
 const Table<LightSettings>& light_table();

@@ -9,4 +9,10 @@ std::string to_string(const Origin& origin) {
   return fmt::format("{}:{}:{}", origin.file, origin.line, origin.column);
 }
 
+SolverParams solver_of(const Shot& shot, const BodySettings& body) {
+  SolverParams solver = shot.solver;
+  solver.rotation = body.rotation.value_or(solver.rotation);
+  return solver;
+}
+
 }  // namespace softreel

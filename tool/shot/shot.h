@@ -101,8 +101,9 @@ struct BodySettings {
   BodyLength error;                ///< largest distance to the surface; one of the four is set
   bool graded = false;             ///< with tets or edge: sizes by what the surface asks for
   TetMode mode = TetMode::Conforming;
-  bool optimize = false;  ///< makes the worst angles of the tetrahedra better
-  double thickness = 0;   ///< m, of open sheets; 0: none
+  bool optimize = false;                   ///< makes the worst angles of the tetrahedra better
+  double thickness = 0;                    ///< m, of open sheets; 0: none
+  std::optional<RotationMethod> rotation;  ///< instead of the solver's
   std::vector<RegionSettings> regions;
   std::vector<PinSettings> pins;
   std::vector<PullSettings> pulls;
@@ -184,5 +185,8 @@ struct Shot {
   OutputSettings output;
   GoldenSettings golden;
 };
+
+/// The solver of one body: the shot's, with what the body says of its own.
+SolverParams solver_of(const Shot& shot, const BodySettings& body);
 
 }  // namespace softreel

@@ -39,11 +39,10 @@ void add_steps(KeyHasher& key, const SolverParams& solver) {
 
 }  // namespace
 
-StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
-                             const StageKey& materials) {
+StageKey simulation_base_key(const Shot& shot, const SolverParams& solver, const BodyConstraints& constraints,
+                             const StageKey& filled, const StageKey& materials) {
   KeyHasher key(kSimulationVersion);
   key.add(filled).add(materials).add(shot.gravity).add(shot.settings.mode);
-  const SolverParams& solver = shot.solver;
   key.add(solver.rotation).add(solver.dilatation).add(solver.max_iterations);
   if (shot.settings.mode == SimulationMode::Dynamic) {
     key.add(solver.recovery).add(shot.settings.fps).add(shot.settings.start);
@@ -89,9 +88,9 @@ int first_simulated_frame(const Shot& shot) {
   return shot.settings.first_frame - shot.settings.preroll;
 }
 
-std::vector<StageKey> simulation_keys(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
-                                      const StageKey& materials) {
-  const StageKey base = simulation_base_key(shot, constraints, filled, materials);
+std::vector<StageKey> simulation_keys(const Shot& shot, const SolverParams& solver, const BodyConstraints& constraints,
+                                      const StageKey& filled, const StageKey& materials) {
+  const StageKey base = simulation_base_key(shot, solver, constraints, filled, materials);
   const bool from_rest = shot.settings.mode == SimulationMode::Static && shot.settings.independent;
   const int start = first_simulated_frame(shot);
   std::vector<StageKey> keys;

@@ -9,10 +9,10 @@
 
 namespace softreel {
 
-/// Everything that shapes every frame: tetrahedra, materials (add_materials), solver, which points the constraints
-/// hold.
-StageKey simulation_base_key(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
-                             const StageKey& materials);
+/// Everything that shapes every frame: tetrahedra, materials (add_materials), the body's solver (solver_of), which
+/// points the constraints hold.
+StageKey simulation_base_key(const Shot& shot, const SolverParams& solver, const BodyConstraints& constraints,
+                             const StageKey& filled, const StageKey& materials);
 
 /// The previous frame's key with the *values* of the constraints at the sub-steps of this frame (under error control:
 /// at every time where one may end): an edit that changes no value changes no key. `is_start`: the frame is where the
@@ -27,7 +27,7 @@ StageKey constraints_key(const BodyConstraints& constraints, double frame);
 int first_simulated_frame(const Shot& shot);
 
 /// Keys of all frames from first_simulated_frame to the last one, without simulating or filling anything.
-std::vector<StageKey> simulation_keys(const Shot& shot, const BodyConstraints& constraints, const StageKey& filled,
-                                      const StageKey& materials);
+std::vector<StageKey> simulation_keys(const Shot& shot, const SolverParams& solver, const BodyConstraints& constraints,
+                                      const StageKey& filled, const StageKey& materials);
 
 }  // namespace softreel

@@ -75,7 +75,8 @@ BodySimulation::BodySimulation(const Shot& shot, const BodySettings& settings, c
       context_(context),
       constraints_(std::move(constraints)),
       filled_key_(softreel::filled_key(settings, loaded)),
-      frame_keys_(simulation_keys(shot, constraints_, filled_key_, materials_key(shot, settings, loaded))),
+      frame_keys_(simulation_keys(shot, solver_of(shot, settings), constraints_, filled_key_,
+                                  materials_key(shot, settings, loaded))),
       touched_(frame_keys_.size(), false),
       frame_number_(first_simulated_frame(shot) - 1) {}
 
@@ -107,8 +108,9 @@ SimulationState BodySimulation::rest_state() const {
 Simulator& BodySimulation::simulator() {
   if (!simulator_) {
     const ScopedStage stage(context_.times, "simulate/set-up");
-    simulator_ = std::make_unique<Simulator>(make_body_model(shot_, settings_, loaded_, filled(), constraints_),
-                                             shot_.solver, context_.threads, context_.log, context_.times);
+    simulator_ =
+        std::make_unique<Simulator>(make_body_model(shot_, settings_, loaded_, filled(), constraints_),
+                                    solver_of(shot_, settings_), context_.threads, context_.log, context_.times);
   }
   if (!simulator_holds_frame_) simulator_->set_state(frame_.state);
   simulator_holds_frame_ = true;

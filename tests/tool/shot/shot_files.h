@@ -91,6 +91,7 @@ material = "rubber"
 edge = 0.03
 mode = "embedded"
 thickness = 0.02
+rotation = "paper"
 
 [[body.second_by_name.region]]
 select = [

@@ -27,9 +27,9 @@ BodyConstraints simple_constraints() {
 int first_changed(const std::function<void(Shot&, BodyConstraints&)>& edit) {
   Shot shot = simple_shot();
   BodyConstraints constraints = simple_constraints();
-  const std::vector<StageKey> before = simulation_keys(shot, constraints, "filled", "materials");
+  const std::vector<StageKey> before = simulation_keys(shot, shot.solver, constraints, "filled", "materials");
   edit(shot, constraints);
-  const std::vector<StageKey> after = simulation_keys(shot, constraints, "filled", "materials");
+  const std::vector<StageKey> after = simulation_keys(shot, shot.solver, constraints, "filled", "materials");
   for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i)
     if (before[i] != after[i]) return static_cast<int>(i) + 1;
   return 0;
@@ -78,20 +78,34 @@ TEST(FrameKey, RecoveryMattersInDynamicsOnly) {
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.recovery = false; }), 1);
   Shot shot = simple_shot();
   shot.settings.mode = SimulationMode::Static;
-  const auto keys = simulation_keys(shot, simple_constraints(), "filled", "materials");
+  const auto keys = simulation_keys(shot, shot.solver, simple_constraints(), "filled", "materials");
   shot.solver.recovery = false;
-  EXPECT_EQ(simulation_keys(shot, simple_constraints(), "filled", "materials"), keys);
+  EXPECT_EQ(simulation_keys(shot, shot.solver, simple_constraints(), "filled", "materials"), keys);
+}
+
+TEST(FrameKey, KnowsTheRotationsOfTheBodyItself) {
+  Shot shot = simple_shot();
+  BodySettings body;
+  const auto keys = [&] {
+    return simulation_keys(shot, solver_of(shot, body), simple_constraints(), "filled", "materials");
+  };
+  const auto of_the_shot = keys();
+  body.rotation = RotationMethod::None;
+  const auto of_the_body = keys();
+  EXPECT_NE(of_the_body.front(), of_the_shot.front());
+  shot.solver.rotation = RotationMethod::Paper;
+  EXPECT_EQ(keys(), of_the_body) << "the body has its own";
 }
 
 TEST(FrameKey, IndependentFramesKnowNothingOfEachOther) {
   Shot shot = simple_shot();
   shot.settings.mode = SimulationMode::Static;
   shot.settings.independent = true;
-  const auto keys = simulation_keys(shot, simple_constraints(), "filled", "materials");
+  const auto keys = simulation_keys(shot, shot.solver, simple_constraints(), "filled", "materials");
   EXPECT_EQ(keys[10], keys[40]) << "the pin is where it was";
   EXPECT_NE(keys[10], keys[55]);
   shot.settings.independent = false;
-  const auto chained = simulation_keys(shot, simple_constraints(), "filled", "materials");
+  const auto chained = simulation_keys(shot, shot.solver, simple_constraints(), "filled", "materials");
   EXPECT_NE(chained[10], chained[40]) << "the frame starts from the one before";
 }
 
@@ -130,9 +144,9 @@ TEST(FrameKey, KnowsTheConstraintsAtEveryTimeThatErrorControlMayLookAt) {
   Shot shot = simple_shot();
   shot.solver.step_error = 1e-3;
   BodyConstraints constraints = simple_constraints();
-  const auto before = simulation_keys(shot, constraints, "filled", "materials");
+  const auto before = simulation_keys(shot, shot.solver, constraints, "filled", "materials");
   constraints.pins[0].active = {{1, 20.2}, {20.3, 60}};
-  const auto after = simulation_keys(shot, constraints, "filled", "materials");
+  const auto after = simulation_keys(shot, shot.solver, constraints, "filled", "materials");
   EXPECT_EQ(before[19], after[19]);
   EXPECT_NE(before[20], after[20]);
 }
