@@ -27,7 +27,7 @@ void make(const Sculpture& sculpture, const std::string& directory, const Thread
 }
 
 int run(const std::vector<std::string>& arguments) {
-  const Sculpture all[] = {make_creature(), make_colt(), make_bar(), make_octopus()};
+  const Sculpture all[] = {make_creature(), make_colt(), make_bar(), make_octopus(), make_pudding()};
   std::string names;
   for (const Sculpture& s : all) names += " " + s.name;
   if (arguments.empty()) throw input_error("make_assets: no folder is given. Call make_assets DIRECTORY [NAME...].");

@@ -44,4 +44,7 @@ Sculpture make_bar();
 /// A plump octopus on eight curled arms.
 Sculpture make_octopus();
 
+/// A fluted pudding of three tiers, turned out of its mould.
+Sculpture make_pudding();
+
 }  // namespace softreel::sculpt
