@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "core/elasticity/element_rotation.h"
@@ -91,6 +92,21 @@ std::vector<std::uint8_t> find_held_pieces(const ElasticBody& body, const HeldBo
   return of_element;
 }
 
+/// Elements that are to share a rotation, connected through nodes.
+struct Patch {
+  Mat3 sum = Mat3::Zero();   ///< of V F
+  double volume = 0;         ///< at rest
+  std::int64_t leader = -1;  ///< its first element
+};
+
+/// Whether the largest stretch of the mean F is above kDrawnOut: the largest eigenvalue of F^T F above its square.
+bool is_drawn_out(const Patch& patch) {
+  const Mat3 mean = patch.sum / patch.volume;
+  Eigen::SelfAdjointEigenSolver<Mat3> squares;
+  squares.computeDirect(mean.transpose() * mean, Eigen::EigenvaluesOnly);
+  return squares.eigenvalues()[2] > kDrawnOut * kDrawnOut;
+}
+
 }  // namespace
 
 void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, std::int64_t flat, const HeldBody& held,
@@ -124,7 +140,7 @@ void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, st
     troubles = {};
 }
 
-void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, const ElementTroubles& troubles,
+void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, ElementTroubles& troubles,
                      std::span<const Quaternion> guesses, std::span<Quaternion> rotations, RecoveryReport& report) {
   std::vector<std::size_t> sharing;
   std::vector<Tet> tets;
@@ -134,24 +150,30 @@ void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, c
       tets.push_back(body.tets[e]);
     }
   if (sharing.empty()) return;
-  const Pieces patches = find_pieces(tets, positions.size());
+  const Pieces patch_of_node = find_pieces(tets, positions.size());
   const auto patch_of = [&](std::size_t e) {
-    return static_cast<std::size_t>(patches.of_node[static_cast<std::size_t>(body.tets[e][0])]);
+    return static_cast<std::size_t>(patch_of_node.of_node[static_cast<std::size_t>(body.tets[e][0])]);
   };
   // A node of no such element is a piece of its own, without elements.
-  std::vector<Mat3> sums(static_cast<std::size_t>(patches.count), Mat3::Zero());
-  std::vector<std::int64_t> first(sums.size(), -1);
+  std::vector<Patch> patches(static_cast<std::size_t>(patch_of_node.count));
   for (const std::size_t e : sharing) {
     const ElementShape& shape = body.shapes[e];
-    sums[patch_of(e)] += shape.volume * deformation_gradient(shape.gradients, nodes_of(body.tets[e], positions));
-    if (first[patch_of(e)] < 0) first[patch_of(e)] = static_cast<std::int64_t>(e);
+    Patch& patch = patches[patch_of(e)];
+    patch.sum += shape.volume * deformation_gradient(shape.gradients, nodes_of(body.tets[e], positions));
+    patch.volume += shape.volume;
+    if (patch.leader < 0) patch.leader = static_cast<std::int64_t>(e);
   }
   for (const std::size_t e : sharing) {
-    const auto leader = static_cast<std::size_t>(first[patch_of(e)]);
-    rotations[e] = e == leader ? find_rotation(sums[patch_of(e)], guesses[e]) : rotations[leader];
+    const Patch& patch = patches[patch_of(e)];
+    const auto leader = static_cast<std::size_t>(patch.leader);
+    if (is_drawn_out(patch)) {
+      troubles[e].sharing = 0;
+      continue;
+    }
+    rotations[e] = e == leader ? find_rotation(patch.sum, guesses[e]) : rotations[leader];
     report.patches += e == leader ? 1 : 0;
+    ++report.elements;
   }
-  report.elements = static_cast<Index>(sharing.size());
 }
 
 }  // namespace softreel

@@ -25,6 +25,11 @@ inline constexpr int kStepsPerRing = 12;    ///< of lasting trouble, after which
 inline constexpr int kStepsToWatch = 8;     ///< that the rings of an element are looked at after it was flat
 inline constexpr int kStepsToGiveUp = 150;  ///< of sharing that an element of a held piece may ask for: 12 rings
 
+/// A patch whose mean deformation gradient stretches some direction by more is left alone: pins or pulls draw it out,
+/// as no tangle does to itself. There its cross-sections turn freely (nothing crosses the pull resists), and one
+/// rotation for all of them would take these turns for swelling: a drawn-out leg blew up to several times its width.
+inline constexpr double kDrawnOut = 1.8;
+
 /// What recovery knows of one element; all zero for one that was well for long.
 struct ElementTrouble {
   float bad_steps = 0;     ///< in a row: inverted or wound
@@ -57,9 +62,10 @@ struct HeldBody {
 void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, std::int64_t flat, const HeldBody& held,
                     double seconds, ElementTroubles& troubles, RecoveryReport& report);
 
-/// Gives the elements with steps left to share the rotation nearest to the sum of V F over their patch. rotations:
-/// those of the elements alone in, results out; guesses: those of the step before, for ties. Sets elements and patches.
-void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, const ElementTroubles& troubles,
+/// Gives the elements with steps left to share the rotation nearest to the sum of V F over their patch; those of a
+/// patch that is drawn out (kDrawnOut) lose these steps and keep their own. rotations: those of the elements alone in,
+/// results out; guesses: those of the step before, for ties. Sets elements and patches.
+void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, ElementTroubles& troubles,
                      std::span<const Quaternion> guesses, std::span<Quaternion> rotations, RecoveryReport& report);
 
 }  // namespace softreel

@@ -265,5 +265,28 @@ TEST(ShareRotations, GivesEachPatchTheRotationOfItsSumAndOthersTheirOwn) {
   }
 }
 
+TEST(ShareRotations, LeavesAPatchAloneThatIsDrawnOut) {
+  Watched bar;
+  const std::size_t n = bar.mesh.tets.size();
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const double stretch : {0.98 * kDrawnOut, 1.02 * kDrawnOut}) {
+    for (std::size_t i = 0; i < bar.positions.size(); ++i) {
+      const Vec3& rest = bar.mesh.nodes[i];
+      bar.positions[i] = turn * Vec3(stretch * rest.x(), 0.4 * rest.y(), 0.4 * rest.z());
+    }
+    bar.troubles.assign(n, {});
+    for (std::size_t e = 0; e < n; ++e)
+      if (testing::centroid(bar.mesh, e).x() < 0.5) bar.troubles[e].sharing = 1;
+    const std::vector<Quaternion> own(n, Quaternion::Identity());
+    std::vector<Quaternion> shared = own;
+    RecoveryReport report;
+    share_rotations(bar.body, bar.positions, bar.troubles, own, shared, report);
+    const bool left_alone = stretch > kDrawnOut;
+    EXPECT_EQ(report.elements == 0, left_alone);
+    EXPECT_EQ(bar.sharing(), report.elements);
+    EXPECT_EQ(shared.front().angularDistance(own.front()) == 0, left_alone);
+  }
+}
+
 }  // namespace
 }  // namespace softreel
