@@ -12,13 +12,6 @@
 namespace softreel {
 namespace {
 
-std::vector<double> youngs_moduli(const std::vector<ElementMaterial>& materials) {
-  std::vector<double> moduli;
-  moduli.reserve(materials.size());
-  for (const ElementMaterial& material : materials) moduli.push_back(material.youngs_modulus);
-  return moduli;
-}
-
 /// Diagonal of the box around the nodes, m.
 double box_diagonal(const std::vector<Vec3>& nodes) {
   Vec3 low = nodes.front(), high = low;
@@ -53,6 +46,13 @@ MultigridParams with_poisson_ratio(MultigridParams params, const std::vector<Ele
 }
 
 }  // namespace
+
+std::vector<double> youngs_moduli(const std::vector<ElementMaterial>& materials) {
+  std::vector<double> moduli;
+  moduli.reserve(materials.size());
+  for (const ElementMaterial& material : materials) moduli.push_back(material.youngs_modulus);
+  return moduli;
+}
 
 Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads,
                         const Log& its_log, StageTimes& its_times)

@@ -43,6 +43,9 @@ struct KnownRest {
   std::vector<ActivePull> pulls;
 };
 
+/// Young's modulus per element, Pa.
+std::vector<double> youngs_moduli(const std::vector<ElementMaterial>& materials);
+
 struct Simulator::Parts {
   Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads, const Log& its_log,
         StageTimes& its_times);
@@ -62,6 +65,7 @@ struct Simulator::Parts {
   std::vector<double> damping_stiffness;  ///< per element, s
   StepSeconds float_seconds;              ///< those that float_ratio was found for
   double float_ratio = 0;                 ///< see suits_float
+  AlignedVector<double> tension_limits;   ///< StepSource::tension_limits; made when first asked for
   double body_size = 0;                   ///< of the body at rest, m: what errors and rest are relative to
   SimulationState state;
 

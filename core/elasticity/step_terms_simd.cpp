@@ -6,6 +6,7 @@
 #include <experimental/simd>
 
 #include "core/elasticity/lane_elements.h"
+#include "core/elasticity/lane_tension.h"
 #include "core/elasticity/step_terms.h"
 
 namespace softreel {
@@ -54,10 +55,10 @@ struct Pressure {
 }
 
 /// t sigma + t C : O + s C : D with D = Q^T grad v, O that of the offsets and C : D = 2 mu sym(D) + slope tr(D) I, in
-/// the frame of the rest shape.
+/// the frame of the rest shape. strain, pressure: of the positions alone.
 struct Stress {
-  Symmetric value;
-  Lanes slope;
+  Symmetric value, strain;
+  Lanes pressure, slope;
 };
 
 [[gnu::always_inline]] inline Lanes trace(const Symmetric& s) {
@@ -78,7 +79,9 @@ template <bool kOffsets>
   const Symmetric D = find_strain(rotation, velocity_gradient);
   const Lanes one(1), two_mu = load(batch.mu) + load(batch.mu);
   for (const std::size_t k : {0, 3, 5}) strain[k] -= one;
+  const Symmetric strain_now = strain;
   Pressure pressure = find_pressure(batch, trace(strain));
+  const Lanes pressure_now = pressure.value;
   if constexpr (kOffsets) {
     const Symmetric O = find_strain(rotation, offset_gradient);
     for (std::size_t k = 0; k < 6; ++k) strain[k] += O[k];
@@ -87,7 +90,32 @@ template <bool kOffsets>
   const Lanes mean = seconds * pressure.value + share * (pressure.slope * trace(D));
   const auto deviator = [&](std::size_t k) { return two_mu * (seconds * strain[k] + share * D[k]); };
   return {{mean + deviator(0), deviator(1), deviator(2), mean + deviator(3), deviator(4), mean + deviator(5)},
+          strain_now,
+          pressure_now,
           pressure.slope};
+}
+
+/// What tension that the step must know of adds to a batch: to the stress by its nodes' motion, and to the matrix.
+struct Curvature {
+  Vector moment;  ///< w, with which the stress in the frame of the rest shape gains [w]x
+  Symmetric C;    ///< in space, over the share of the gradients
+};
+
+[[gnu::noinline]] Curvature find_curvature(const detail::TensionSource<Lanes>& source, const Matrix& rotation,
+                                           const Matrix& velocity_gradient, const Matrix& offset_gradient,
+                                           const Lanes& seconds, const Lanes& reach, const Lanes& share) {
+  detail::PrincipalAxes<Lanes> tension = detail::find_tension(source);
+  const Vector turn = detail::curl(detail::transposed_product(rotation, velocity_gradient)),
+               offset = detail::curl(detail::transposed_product(rotation, offset_gradient));
+  Vector way;
+  for (std::size_t c = 0; c < 3; ++c) way[c] = seconds * (reach * turn[c] + offset[c]);
+  Curvature curvature{detail::product(detail::matrix_of(tension), way), {}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    tension.values[k] *= seconds * reach / (share * source.mu);
+    tension.axes[k] = detail::product(rotation, tension.axes[k]);
+  }
+  curvature.C = detail::matrix_of(tension);
+  return curvature;
 }
 
 using NodeVectors = std::array<Vector, 4>;
@@ -134,6 +162,61 @@ using NodeVectors = std::array<Vector, 4>;
   return any;
 }
 
+/// The curvatures of a slab's elements: no memory as long as there are none.
+class StoredCurvatures {
+ public:
+  /// kept: as above, but of C itself, beside which the block of an element has a share of 1.
+  StoredCurvatures(AlignedVector<float>& stored, std::size_t first_batch, float kept)
+      : stored_(stored), first_batch_(first_batch), kept_(kept) {}
+
+  /// Replaces those of the first `elements` lanes of batch b that change; true if there are any.
+  bool store(std::size_t b, const Symmetric& C, std::size_t elements) {
+    if (stored_.empty()) stored_.resize(kSlabBatches * kElementLanes * kCurvatureFloats, 0.0F);
+    bool any = false;
+    for (std::size_t lane = 0; lane < elements; ++lane) {
+      const auto entry = [&](std::size_t k) { return static_cast<float>(C[k][lane]); };
+      any |=
+          replace({entry(0), entry(1), entry(2), 0, entry(1), entry(3), entry(4), 0, entry(2), entry(4), entry(5), 0},
+                  rows(b, lane));
+    }
+    return any;
+  }
+
+  /// The same for elements without tension.
+  bool clear(std::size_t b, std::size_t elements) {
+    if (stored_.empty()) return false;
+    bool any = false;
+    for (std::size_t lane = 0; lane < elements; ++lane) any |= replace({}, rows(b, lane));
+    return any;
+  }
+
+  /// After the last batch: gives the memory back if no element has any.
+  void finish() {
+    if (!nonzero_) AlignedVector<float>().swap(stored_);
+  }
+
+ private:
+  using Entries = std::array<float, kCurvatureFloats>;
+
+  float* rows(std::size_t b, std::size_t lane) {
+    return stored_.data() + kCurvatureFloats * (kElementLanes * (b - first_batch_) + lane);
+  }
+
+  bool replace(const Entries& fresh, float* rows) {
+    float change = 0;
+    for (std::size_t k = 0; k < kCurvatureFloats; ++k) change += (fresh[k] - rows[k]) * (fresh[k] - rows[k]);
+    const bool changes = change > 0 && !(change <= kept_);
+    if (changes) std::copy(fresh.begin(), fresh.end(), rows);
+    nonzero_ = nonzero_ || rows[0] + rows[5] + rows[10] > 0;
+    return changes;
+  }
+
+  AlignedVector<float>& stored_;
+  std::size_t first_batch_;
+  float kept_;
+  bool nonzero_ = false;
+};
+
 /// Takes the forces of the first `elements` lanes off the slab's sums, in the order of elements.
 [[gnu::always_inline]] inline void subtract_forces(const NodeVectors& f, std::size_t elements,
                                                    const std::uint16_t* places, double* sums) {
@@ -157,6 +240,9 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
   std::fill(sums, terms.forces.data() + std::size_t{4} * slabs.slab_offsets[slab + 1], 0.0);
   const auto kept = static_cast<float>(source.kept_change * std::abs(source.kept_change));
   bool changed = false;
+  const bool knows_tension = !source.tension_limits.empty();
+  const Lanes least_share(1 / std::sqrt(source.seconds.velocity * source.seconds.position));
+  StoredCurvatures curvatures(terms.curvatures[slab], begin, kept);
   const Lanes seconds(source.seconds.velocity), reach(source.seconds.position);
   for (std::size_t b = begin; b < end; ++b) {
     const ElementBatch& batch = body.batches[b];
@@ -171,6 +257,17 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
     const Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share);
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;
     Matrix T = detail::product(Q, stress.value), scaled = Q;
+    if (knows_tension) {
+      const detail::TensionSource<Lanes> tension{stress.strain, stress.pressure, mu,
+                                                 least_share * load(source.tension_limits.data() + first)};
+      if (stdx::any_of(detail::may_be_tense(tension))) {
+        const Curvature curvature = find_curvature(tension, Q, G, offset_gradient, seconds, reach, share);
+        detail::add_cross_product(Q, curvature.moment, T);
+        changed |= curvatures.store(b, curvature.C, std::min(kElementLanes, elements - first));
+      } else {
+        changed |= curvatures.clear(b, std::min(kElementLanes, elements - first));
+      }
+    }
     const Lanes scale = stdx::sqrt(share * volume * mu);
     for (std::size_t k = 0; k < 9; ++k) {
       T[k] *= volume;
@@ -180,6 +277,7 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
     subtract_forces(find_products(batch, T), std::min(kElementLanes, elements - first), slabs.places_of(b), sums);
     different += stdx::popcount(stdx::static_simd_cast<Floats>(ratio) != Floats(expected_ratio));
   }
+  curvatures.finish();
   if (changed) terms.changed[slab] = 1;
   return different;
 }
