@@ -44,9 +44,12 @@ template <typename Lanes>
 template <typename Lanes>
 [[gnu::always_inline]] inline PrincipalAxes<Lanes> find_principal_axes(Symmetric3<Lanes> a) {
   constexpr int kSweeps = 4;
+  constexpr double kRoundOff = 1e-32;  // square of that of the axes
   const Lanes zero(0), one(1);
   std::array<Vector3<Lanes>, 3> v{Vector3<Lanes>{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    const Lanes off = a[1] * a[1] + a[2] * a[2] + a[4] * a[4], all = a[0] * a[0] + a[3] * a[3] + a[5] * a[5];
+    if (std::experimental::all_of(off <= Lanes(kRoundOff) * all)) break;
     rotate_plane(a[0], a[3], a[1], a[2], a[4], v[0], v[1]);
     rotate_plane(a[0], a[5], a[2], a[1], a[4], v[0], v[2]);
     rotate_plane(a[3], a[5], a[4], a[1], a[2], v[1], v[2]);
@@ -62,16 +65,18 @@ struct TensionSource {
 };
 
 /// Lanes where a kappa_k may exceed `least`: by a bound on the sum of two principal strains that is sharp where two of
-/// them are equal. Their deviators' squares are at most two thirds of the sum of all squares.
+/// them are equal. None is below their mean by more than the root of two thirds of the sum of their deviators' squares.
 template <typename Lanes>
 [[gnu::always_inline]] inline auto may_be_tense(const TensionSource<Lanes>& source) {
   const Symmetric3<Lanes>& e = source.strain;
   const Lanes two_mu = source.mu + source.mu, two(2), mean = (e[0] + e[3] + e[5]) * Lanes(1.0 / 3);
   const Lanes x = e[0] - mean, y = e[3] - mean, z = e[5] - mean;
   const Lanes square = (x * x + y * y + z * z) + two * (e[1] * e[1] + e[2] * e[2] + e[4] * e[4]);
-  const Lanes sum = two + two * mean + std::experimental::sqrt(Lanes(2.0 / 3) * square);
-  const Lanes left = (two_mu - source.least) * sum, right = two * (two_mu - source.pressure);
-  return left >= right || source.pressure > two_mu;  // without a cap kappa is greatest where stretches are least
+  // (2 mu - least) (s_i + s_j) > 2 (2 mu - p) for s_i + s_j = 2 + 2 mean + sqrt(2 square / 3), without the root.
+  const Lanes factor = two_mu - source.least, missing = two * ((two_mu - source.pressure) - factor * (mean + Lanes(1)));
+  const auto reached = missing <= Lanes(0) || factor * factor * square >= Lanes(1.5) * (missing * missing);
+  // Without a cap p may exceed 2 mu: then kappa is greatest where stretches are least.
+  return (factor > Lanes(0) && reached) || source.pressure > two_mu;
 }
 
 /// (kappa_k - least)^+ / 2 with their axes.

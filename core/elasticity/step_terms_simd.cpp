@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <experimental/simd>
 
@@ -55,10 +56,11 @@ struct Pressure {
 }
 
 /// t sigma + t C : O + s C : D with D = Q^T grad v, O that of the offsets and C : D = 2 mu sym(D) + slope tr(D) I, in
-/// the frame of the rest shape. strain, pressure: of the positions alone.
+/// the frame of the rest shape.
 struct Stress {
-  Symmetric value, strain;
-  Lanes pressure, slope;
+  Symmetric value;
+  Lanes slope;
+  bool tense = false;  ///< the positions may hold tension above the limit
 };
 
 [[gnu::always_inline]] inline Lanes trace(const Symmetric& s) {
@@ -70,18 +72,23 @@ struct Stress {
   return detail::symmetric_part(detail::transposed_product(rotation, gradient));
 }
 
-/// kOffsets: there are offsets, whose gradient is `offset_gradient`.
+[[gnu::always_inline]] inline Symmetric find_elastic_strain(const Matrix& rotation, const Matrix& F) {
+  Symmetric strain = find_strain(rotation, F);
+  for (const std::size_t k : {0, 3, 5}) strain[k] -= Lanes(1);
+  return strain;
+}
+
+/// kOffsets: there are offsets, whose gradient is `offset_gradient`. least: tension limit, Pa.
 template <bool kOffsets>
 [[gnu::always_inline]] inline Stress find_stress(const ElementBatch& batch, const Matrix& rotation, const Matrix& F,
                                                  const Matrix& velocity_gradient, const Matrix& offset_gradient,
-                                                 const Lanes& seconds, const Lanes& share) {
-  Symmetric strain = find_strain(rotation, F);
+                                                 const Lanes& seconds, const Lanes& share, const Lanes& least) {
+  Symmetric strain = find_elastic_strain(rotation, F);
   const Symmetric D = find_strain(rotation, velocity_gradient);
-  const Lanes one(1), two_mu = load(batch.mu) + load(batch.mu);
-  for (const std::size_t k : {0, 3, 5}) strain[k] -= one;
-  const Symmetric strain_now = strain;
+  const Lanes mu = load(batch.mu), two_mu = mu + mu;
   Pressure pressure = find_pressure(batch, trace(strain));
-  const Lanes pressure_now = pressure.value;
+  const bool tense =
+      stdx::any_of(detail::may_be_tense(detail::TensionSource<Lanes>{strain, pressure.value, mu, least}));
   if constexpr (kOffsets) {
     const Symmetric O = find_strain(rotation, offset_gradient);
     for (std::size_t k = 0; k < 6; ++k) strain[k] += O[k];
@@ -90,29 +97,51 @@ template <bool kOffsets>
   const Lanes mean = seconds * pressure.value + share * (pressure.slope * trace(D));
   const auto deviator = [&](std::size_t k) { return two_mu * (seconds * strain[k] + share * D[k]); };
   return {{mean + deviator(0), deviator(1), deviator(2), mean + deviator(3), deviator(4), mean + deviator(5)},
-          strain_now,
-          pressure_now,
-          pressure.slope};
+          pressure.slope,
+          tense};
 }
 
-/// What tension that the step must know of adds to a batch: to the stress by its nodes' motion, and to the matrix.
+[[gnu::always_inline]] inline Lanes find_damping(const StepSource& source, std::size_t first) {
+  const std::size_t last = source.rotations.size() - 1;
+  return Lanes([&](auto lane) { return source.damping_stiffness[std::min(first + lane, last)]; });
+}
+
+/// Tension limits of the batch that starts at element `first`, Pa; infinite without any.
+[[gnu::always_inline]] inline Lanes find_least_tension(const StepSource& source, std::size_t first) {
+  if (source.tension_limits.empty()) return std::numeric_limits<double>::infinity();
+  return load(source.tension_limits.data() + first) *
+         Lanes(1 / std::sqrt(source.seconds.velocity * source.seconds.position));
+}
+
+/// What tension above the limit adds to a batch: to the stress by its nodes' motion, and to the matrix.
 struct Curvature {
   Vector moment;  ///< w, with which the stress in the frame of the rest shape gains [w]x
   Symmetric C;    ///< in space, over the share of the gradients
 };
 
-[[gnu::noinline]] Curvature find_curvature(const detail::TensionSource<Lanes>& source, const Matrix& rotation,
-                                           const Matrix& velocity_gradient, const Matrix& offset_gradient,
-                                           const Lanes& seconds, const Lanes& reach, const Lanes& share) {
-  detail::PrincipalAxes<Lanes> tension = detail::find_tension(source);
-  const Vector turn = detail::curl(detail::transposed_product(rotation, velocity_gradient)),
-               offset = detail::curl(detail::transposed_product(rotation, offset_gradient));
-  Vector way;
-  for (std::size_t c = 0; c < 3; ++c) way[c] = seconds * (reach * turn[c] + offset[c]);
+/// Apart from the kernel, and from memory again, so that batches without tension keep what they have in registers.
+[[gnu::noinline]] Curvature find_curvature(const StepSource& source, const ElementBatch& batch, std::size_t first) {
+  const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
+  const Symmetric strain =
+      find_elastic_strain(Q, detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned));
+  const Lanes mu = load(batch.mu), reach(source.seconds.position);
+  detail::PrincipalAxes<Lanes> tension = detail::find_tension(detail::TensionSource<Lanes>{
+      strain, find_pressure(batch, trace(strain)).value, mu, find_least_tension(source, first)});
+  const auto curl_of = [&](std::span<const Vec3> vectors) {
+    return detail::curl(detail::transposed_product(Q, detail::gradient<Lanes>(batch, vectors, stdx::vector_aligned)));
+  };
+  Vector way = curl_of(source.velocities);
+  for (Lanes& w : way) w *= reach;
+  if (!source.offsets.empty()) {
+    const Vector offset = curl_of(source.offsets);
+    for (std::size_t c = 0; c < 3; ++c) way[c] += offset[c];
+  }
+  for (Lanes& w : way) w *= Lanes(source.seconds.velocity);
   Curvature curvature{detail::product(detail::matrix_of(tension), way), {}};
+  const Lanes share = reach / ((reach + find_damping(source, first)) * mu);
   for (std::size_t k = 0; k < 3; ++k) {
-    tension.values[k] *= seconds * reach / (share * source.mu);
-    tension.axes[k] = detail::product(rotation, tension.axes[k]);
+    tension.values[k] *= share;
+    tension.axes[k] = detail::product(Q, tension.axes[k]);
   }
   curvature.C = detail::matrix_of(tension);
   return curvature;
@@ -173,8 +202,10 @@ class StoredCurvatures {
   bool store(std::size_t b, const Symmetric& C, std::size_t elements) {
     if (stored_.empty()) stored_.resize(kSlabBatches * kElementLanes * kCurvatureFloats, 0.0F);
     bool any = false;
+    alignas(32) double entries[6][kElementLanes];
+    for (std::size_t k = 0; k < 6; ++k) C[k].copy_to(entries[k], stdx::vector_aligned);
     for (std::size_t lane = 0; lane < elements; ++lane) {
-      const auto entry = [&](std::size_t k) { return static_cast<float>(C[k][lane]); };
+      const auto entry = [&](std::size_t k) { return static_cast<float>(entries[k][lane]); };
       any |=
           replace({entry(0), entry(1), entry(2), 0, entry(1), entry(3), entry(4), 0, entry(2), entry(4), entry(5), 0},
                   rows(b, lane));
@@ -233,40 +264,35 @@ template <bool kOffsets>
 std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float expected_ratio, StepTerms& terms,
                        std::size_t slab) {
   std::int64_t different = 0;
-  const std::size_t elements = source.rotations.size(), last = elements - 1, begin = kSlabBatches * slab,
+  const std::size_t elements = source.rotations.size(), begin = kSlabBatches * slab,
                     end = std::min(begin + kSlabBatches, body.batches.size());
   const NodeSlabs& slabs = body.node_slabs;
   double* const sums = terms.forces.data() + std::size_t{4} * slabs.slab_offsets[slab];
   std::fill(sums, terms.forces.data() + std::size_t{4} * slabs.slab_offsets[slab + 1], 0.0);
   const auto kept = static_cast<float>(source.kept_change * std::abs(source.kept_change));
   bool changed = false;
-  const bool knows_tension = !source.tension_limits.empty();
-  const Lanes least_share(1 / std::sqrt(source.seconds.velocity * source.seconds.position));
   StoredCurvatures curvatures(terms.curvatures[slab], begin, kept);
   const Lanes seconds(source.seconds.velocity), reach(source.seconds.position);
   for (std::size_t b = begin; b < end; ++b) {
     const ElementBatch& batch = body.batches[b];
     const std::size_t first = kElementLanes * b;
     const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
-    const Lanes share =
-        seconds * (reach + Lanes([&](auto lane) { return source.damping_stiffness[std::min(first + lane, last)]; }));
+    const Lanes share = seconds * (reach + find_damping(source, first));
     const Matrix F = detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned);
     const Matrix G = detail::gradient<Lanes>(batch, source.velocities, stdx::vector_aligned);
     Matrix offset_gradient{};
     if constexpr (kOffsets) offset_gradient = detail::gradient<Lanes>(batch, source.offsets, stdx::vector_aligned);
-    const Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share);
+    const Stress stress =
+        find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share, find_least_tension(source, first));
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;
     Matrix T = detail::product(Q, stress.value), scaled = Q;
-    if (knows_tension) {
-      const detail::TensionSource<Lanes> tension{stress.strain, stress.pressure, mu,
-                                                 least_share * load(source.tension_limits.data() + first)};
-      if (stdx::any_of(detail::may_be_tense(tension))) {
-        const Curvature curvature = find_curvature(tension, Q, G, offset_gradient, seconds, reach, share);
-        detail::add_cross_product(Q, curvature.moment, T);
-        changed |= curvatures.store(b, curvature.C, std::min(kElementLanes, elements - first));
-      } else {
-        changed |= curvatures.clear(b, std::min(kElementLanes, elements - first));
-      }
+    const std::size_t count = std::min(kElementLanes, elements - first);
+    if (stress.tense) {
+      const Curvature curvature = find_curvature(source, batch, first);
+      detail::add_cross_product(Q, curvature.moment, T);
+      changed |= curvatures.store(b, curvature.C, count);
+    } else {
+      changed |= curvatures.clear(b, count);
     }
     const Lanes scale = stdx::sqrt(share * volume * mu);
     for (std::size_t k = 0; k < 9; ++k) {
@@ -274,7 +300,7 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
       scaled[k] *= scale;
     }
     changed |= store_gradients(find_products(batch, scaled), ratio, kept, terms.gradients.data() + 16 * first);
-    subtract_forces(find_products(batch, T), std::min(kElementLanes, elements - first), slabs.places_of(b), sums);
+    subtract_forces(find_products(batch, T), count, slabs.places_of(b), sums);
     different += stdx::popcount(stdx::static_simd_cast<Floats>(ratio) != Floats(expected_ratio));
   }
   curvatures.finish();

@@ -21,10 +21,10 @@ bool may_be_tense(const ElasticLaw& law, const Mat3& strain, double least) {
 }  // namespace
 
 AlignedVector<double> find_tension_limits(const ElasticBody& body, std::span<const double> thickness,
-                                          const std::vector<ElementMaterial>& materials) {
+                                          const std::vector<ElementMaterial>& materials, double share) {
   AlignedVector<double> limits(kElementLanes * body.batches.size(), std::numeric_limits<double>::infinity());
   for (std::size_t e = 0; e < thickness.size(); ++e)
-    limits[e] = 0.5 * thickness[e] * std::sqrt(materials[e].youngs_modulus * materials[e].density / 3);
+    limits[e] = share * thickness[e] * std::sqrt(materials[e].youngs_modulus * materials[e].density / 3);
   return limits;
 }
 

@@ -11,7 +11,7 @@
 namespace softreel {
 namespace {
 
-constexpr double kReach = 1.75;     ///< of a ball, in radii; the root of 3 rounded up
+constexpr double kReach = 2;        ///< of a ball, in radii: above the root of 3, as nodes are seldom at the middle
 constexpr double kSameModulus = 2;  ///< ratio up to which neighbours bend as one
 
 std::span<const Index> neighbors_of(const BlockPattern& pattern, Index node) {

@@ -12,9 +12,9 @@ namespace softreel {
 /// Per element, m: the diameter of the thickest ball of the body that reaches it, and at least its least height.
 ///
 /// A ball is centred on a node and ends at the node nearest to it that is on the boundary, or where two elements meet
-/// whose moduli differ more than twice: a stiff core bends by its own thickness. It reaches as far as the ball round a
-/// cube's middle reaches the cube's corners, 1.75 times its radius. moduli: per element. neighbors: stiffness_pattern
-/// of the mesh. Cost: about that of making the pattern.
+/// whose moduli differ more than twice: a stiff core bends by its own thickness. It reaches twice its
+/// radius, as that round a cube's middle must to have the cube's corners. moduli: per element. neighbors:
+/// stiffness_pattern of the mesh. Cost: about that of making the pattern.
 std::vector<double> find_thickness(const TetMesh& mesh, const BlockPattern& neighbors, std::span<const double> moduli);
 
 }  // namespace softreel
