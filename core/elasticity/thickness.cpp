@@ -21,8 +21,8 @@ std::span<const Index> neighbors_of(const BlockPattern& pattern, Index node) {
   return std::span(pattern.column_indices).subspan(first, last - first);
 }
 
-/// Nodes at which what bends as one ends.
-std::vector<Index> find_ends(const TetMesh& mesh, std::span<const double> moduli) {
+/// 1 per node whose elements do not bend as one.
+std::vector<std::uint8_t> find_seams(const TetMesh& mesh, std::span<const double> moduli) {
   const std::size_t n = mesh.nodes.size();
   std::vector<double> least(n, std::numeric_limits<double>::infinity()), greatest(n, 0);
   for (std::size_t e = 0; e < mesh.tets.size(); ++e)
@@ -31,12 +31,18 @@ std::vector<Index> find_ends(const TetMesh& mesh, std::span<const double> moduli
       least[i] = std::min(least[i], moduli[e]);
       greatest[i] = std::max(greatest[i], moduli[e]);
     }
-  std::vector<std::uint8_t> is_end(n, 0);
+  std::vector<std::uint8_t> seams(n);
+  for (std::size_t i = 0; i < n; ++i) seams[i] = greatest[i] > kSameModulus * least[i] ? 1 : 0;
+  return seams;
+}
+
+/// Nodes of the boundary and of seams.
+std::vector<Index> find_ends(const TetMesh& mesh, std::vector<std::uint8_t> seams) {
   for (const Triangle& face : boundary_faces(mesh))
-    for (const Index node : face) is_end[static_cast<std::size_t>(node)] = 1;
+    for (const Index node : face) seams[static_cast<std::size_t>(node)] = 1;
   std::vector<Index> ends;
-  for (std::size_t i = 0; i < n; ++i)
-    if (is_end[i] != 0 || greatest[i] > kSameModulus * least[i]) ends.push_back(static_cast<Index>(i));
+  for (std::size_t i = 0; i < seams.size(); ++i)
+    if (seams[i] != 0) ends.push_back(static_cast<Index>(i));
   return ends;
 }
 
@@ -66,15 +72,18 @@ std::vector<double> find_depths(const std::vector<Vec3>& nodes, const BlockPatte
   return depths;
 }
 
-/// Radius of the thickest ball that reaches each node, through nodes that no thicker one has reached.
+/// Radius of the thickest ball that reaches each node, through nodes that no thicker one has reached; 0 on seams, which
+/// stop it.
 std::vector<double> find_radii(const std::vector<Vec3>& nodes, const BlockPattern& neighbors,
-                               const std::vector<double>& depths) {
+                               const std::vector<double>& depths, const std::vector<std::uint8_t>& seams) {
   std::vector<Index> order(nodes.size()), reached;
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
     return depths[static_cast<std::size_t>(a)] > depths[static_cast<std::size_t>(b)];
   });
   std::vector<double> radii(nodes.size(), -1);
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    if (seams[i] != 0) radii[i] = 0;
   for (const Index center : order) {
     const auto c = static_cast<std::size_t>(center);
     radii[c] = std::max(radii[c], depths[c]);
@@ -96,8 +105,9 @@ std::vector<double> find_radii(const std::vector<Vec3>& nodes, const BlockPatter
 }  // namespace
 
 std::vector<double> find_thickness(const TetMesh& mesh, const BlockPattern& neighbors, std::span<const double> moduli) {
+  const std::vector<std::uint8_t> seams = find_seams(mesh, moduli);
   const std::vector<double> radii =
-      find_radii(mesh.nodes, neighbors, find_depths(mesh.nodes, neighbors, find_ends(mesh, moduli)));
+      find_radii(mesh.nodes, neighbors, find_depths(mesh.nodes, neighbors, find_ends(mesh, seams)), seams);
   std::vector<double> thickness;
   thickness.reserve(mesh.tets.size());
   for (const Tet& tet : mesh.tets) {
