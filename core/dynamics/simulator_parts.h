@@ -92,8 +92,10 @@ struct Simulator::Parts {
                          std::span<Vec3> forces) const;
   /// 1 per piece that a pin or pull holds.
   std::vector<std::uint8_t> held_pieces(const PinnedNodes& pinned, const std::vector<ActivePull>& pulls) const;
-  /// Names the first element whose shape or force is not a number, or else the node with the greatest entry of `blame`.
-  std::string find_culprit(std::span<const Vec3> positions, std::span<const Vec3> blame) const;
+  /// Names the first element whose shape is not finite; else the first pull active at `frame` whose force is not; else
+  /// the first element whose entries of `blame` are not, or that with the greatest.
+  std::string find_culprit(double frame, std::span<const Vec3> positions, std::span<const Vec3> blame) const;
+  std::string find_boundless_pull(double frame, std::span<const Vec3> positions) const;
 
   StepReport step(double frame, double seconds, double error_limit);
   StepReport find_equilibrium(double frame);

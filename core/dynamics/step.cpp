@@ -266,7 +266,7 @@ StepReport Simulator::Parts::step(double frame, double seconds, double error_lim
   if (ends_frame) coarse_lag.usable = false;
   if (report.ok()) accept_or_reject(*this, work, error_limit, report);
   if (first && (!report.ok() || report.rejected)) state.accelerations.clear();
-  if (!report.ok()) report.culprit = find_culprit(state.positions, work.right_side);
+  if (!report.ok()) report.culprit = find_culprit(frame, state.positions, work.right_side);
   return report;
 }
 
