@@ -12,13 +12,6 @@
 namespace softreel {
 namespace {
 
-std::vector<double> youngs_moduli(const std::vector<ElementMaterial>& materials) {
-  std::vector<double> moduli;
-  moduli.reserve(materials.size());
-  for (const ElementMaterial& material : materials) moduli.push_back(material.youngs_modulus);
-  return moduli;
-}
-
 /// Diagonal of the box around the nodes, m.
 double box_diagonal(const std::vector<Vec3>& nodes) {
   Vec3 low = nodes.front(), high = low;
@@ -53,6 +46,13 @@ MultigridParams with_poisson_ratio(MultigridParams params, const std::vector<Ele
 }
 
 }  // namespace
+
+std::vector<double> youngs_moduli(const std::vector<ElementMaterial>& materials) {
+  std::vector<double> moduli;
+  moduli.reserve(materials.size());
+  for (const ElementMaterial& material : materials) moduli.push_back(material.youngs_modulus);
+  return moduli;
+}
 
 Simulator::Parts::Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads,
                         const Log& its_log, StageTimes& its_times)
@@ -112,20 +112,37 @@ std::vector<std::uint8_t> Simulator::Parts::held_pieces(const PinnedNodes& pinne
   return held;
 }
 
-std::string Simulator::Parts::find_culprit(std::span<const Vec3> positions, std::span<const Vec3> blame) const {
+std::string Simulator::Parts::find_boundless_pull(double frame, std::span<const Vec3> positions) const {
+  for (const Pull& pull : model.pulls) {
+    std::vector<Vec3> forces(positions.size(), Vec3::Zero());
+    for (const ActivePull& active : active_pulls({pull}, model.surface_points, model.embedding, model.mesh, frame))
+      add_pull_forces(active, positions, forces);
+    double square = 0;
+    for (const Vec3& force : forces) square += force.squaredNorm();
+    if (!std::isfinite(square))
+      return fmt::format("{}: with a stiffness of {:g} N/m its force is not finite", pull.name,
+                         pull.stiffness.at(frame));
+  }
+  return {};
+}
+
+std::string Simulator::Parts::find_culprit(double frame, std::span<const Vec3> positions,
+                                           std::span<const Vec3> blame) const {
   const auto describe_element = [&](std::size_t e, const char* what) {
     const TetNodes rest = nodes_of(body.tets[e], body.rest_positions);
     const Vec3 center = 0.25 * (rest[0] + rest[1] + rest[2] + rest[3]);
     return fmt::format("{}: element {} with rest centroid ({:.6g}, {:.6g}, {:.6g}) {}", model.name, e, center.x(),
                        center.y(), center.z(), what);
   };
+  for (std::size_t e = 0; e < body.tets.size(); ++e) {
+    const Mat3 F = deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], positions));
+    if (!F.allFinite()) return describe_element(e, "has a shape that is not finite");
+    if (!std::isfinite(F.squaredNorm())) return describe_element(e, "has a force that is not finite");
+  }
+  if (std::string pull = find_boundless_pull(frame, positions); !pull.empty()) return pull;
   std::size_t worst = 0;
   double greatest = -1;
   for (std::size_t e = 0; e < body.tets.size(); ++e) {
-    const TetNodes nodes_now = nodes_of(body.tets[e], positions);
-    const Mat3 F = deformation_gradient(body.shapes[e].gradients, nodes_now);
-    if (!F.allFinite()) return describe_element(e, "has a shape that is not finite");
-    if (!std::isfinite(F.squaredNorm())) return describe_element(e, "has a force that is not finite");
     double size = 0;
     for (const Index node : body.tets[e]) {
       const double norm = blame[static_cast<std::size_t>(node)].norm();

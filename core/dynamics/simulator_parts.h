@@ -43,6 +43,9 @@ struct KnownRest {
   std::vector<ActivePull> pulls;
 };
 
+/// Young's modulus per element, Pa.
+std::vector<double> youngs_moduli(const std::vector<ElementMaterial>& materials);
+
 struct Simulator::Parts {
   Parts(BodyModel body_model, const SolverParams& solver_params, const Threads& its_threads, const Log& its_log,
         StageTimes& its_times);
@@ -62,6 +65,7 @@ struct Simulator::Parts {
   std::vector<double> damping_stiffness;  ///< per element, s
   StepSeconds float_seconds;              ///< those that float_ratio was found for
   double float_ratio = 0;                 ///< see suits_float
+  AlignedVector<double> tension_limits;   ///< StepSource::tension_limits; made when first asked for
   double body_size = 0;                   ///< of the body at rest, m: what errors and rest are relative to
   SimulationState state;
 
@@ -88,8 +92,10 @@ struct Simulator::Parts {
                          std::span<Vec3> forces) const;
   /// 1 per piece that a pin or pull holds.
   std::vector<std::uint8_t> held_pieces(const PinnedNodes& pinned, const std::vector<ActivePull>& pulls) const;
-  /// Names the first element whose shape or force is not a number, or else the node with the greatest entry of `blame`.
-  std::string find_culprit(std::span<const Vec3> positions, std::span<const Vec3> blame) const;
+  /// Names the first element whose shape is not finite; else the first pull active at `frame` whose force is not; else
+  /// the first element whose entries of `blame` are not, or that with the greatest.
+  std::string find_culprit(double frame, std::span<const Vec3> positions, std::span<const Vec3> blame) const;
+  std::string find_boundless_pull(double frame, std::span<const Vec3> positions) const;
 
   StepReport step(double frame, double seconds, double error_limit);
   StepReport find_equilibrium(double frame);

@@ -92,7 +92,7 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
   report.solve = solve_in_steps(*this, solver, next, motion);
   report.nonlinear_iterations = solver.iterations();
   if (!report.ok()) {
-    report.culprit = find_culprit(next.positions, next.forces);
+    report.culprit = find_culprit(frame, next.positions, next.forces);
     return report;
   }
   state = {std::move(next.positions), std::vector<Vec3>(nodes(), Vec3::Zero()), std::move(next.rotations)};

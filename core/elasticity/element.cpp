@@ -6,12 +6,6 @@
 #include <Eigen/LU>
 
 namespace softreel {
-namespace {
-
-/// Least sum of two principal stretches that the curvature of the rotation divides by.
-constexpr double kSmallestStretchSum = 1e-3;
-
-}  // namespace
 
 ElementShape find_element_shape(const TetNodes& rest) {
   Mat3 edges;

@@ -78,7 +78,9 @@ Eigen::Matrix<double, 12, 12> element_stiffness(const ElementShape& shape, doubl
 ///
 /// The block of nodes i, j gains V [a_i]x C [a_j]x^T = V/2 sum_k kappa_k (m_k x a_i)(m_k x a_j)^T, which makes the
 /// tangent of the consistent rotation exact. positive_part: kappa_k^+ instead, so that the sum stays semidefinite.
-/// Where two stretches nearly cancel (an inversion) s_i + s_j is taken as 1e-3 at least: kappa has a pole there.
+/// Where two stretches nearly cancel (an inversion) s_i + s_j is taken as kSmallestStretchSum at least: kappa has a
+/// pole there.
 Mat3 rotation_curvature(const ElasticLaw& law, const Mat3& rotation, const Mat3& F, bool positive_part);
+inline constexpr double kSmallestStretchSum = 1e-3;
 
 }  // namespace softreel

@@ -23,9 +23,9 @@ class FloatAssembler {
   FloatAssembler(const std::vector<Tet>& tets, const NodeElements& node_elements, const BlockPattern& target,
                  std::span<const Index> row_of_node);
 
-  /// matrix = diag(node_terms I) + sum of the elements' blocks, column-major blocks; symmetric to the last bit.
-  /// node_terms: per mesh node. matrix: on the target pattern, with room. rows: per mesh node, 1 where what the node
-  /// shares with nodes after it is to be made anew; the rest of the matrix stays. Empty: all is made.
+  /// matrix = diag(node_terms I) + sum of the elements' blocks with their curvatures, column-major blocks; symmetric to
+  /// the last bit. node_terms: per mesh node. matrix: on the target pattern, with room. rows: per mesh node, 1 where
+  /// what the node shares with nodes after it is to be made anew; the rest of the matrix stays. Empty: all is made.
   void assemble(const StepTerms& terms, std::span<const double> node_terms, std::span<const std::uint8_t> rows,
                 BlockMatrixf& matrix, const Threads& threads) const;
 
@@ -35,8 +35,11 @@ class FloatAssembler {
     std::uint32_t position, mirror, first;
   };
 
-  template <bool kUniform>
+  /// kUniform: the ratios are; kCurved: there may be curvatures.
+  template <bool kUniform, bool kCurved>
   void gather_row(const StepTerms& terms, double node_term, BlockMatrixf& matrix, std::size_t i) const;
+  template <bool kUniform, bool kCurved>
+  void gather_blocks(const StepTerms& terms, BlockMatrixf& matrix, std::size_t i) const;
 
   const NodeElements& node_elements_;
   std::vector<std::int64_t> diagonals_;    ///< position of each mesh node's diagonal block

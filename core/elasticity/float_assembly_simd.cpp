@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "core/base/check.h"
@@ -22,10 +23,16 @@ using Rows = std::array<Row, 3>;
   return *reinterpret_cast<const UnalignedRow*>(from);
 }
 
-/// Sums of g_i g_j^T and of r g_i g_j^T by rows.
-template <bool kUniform>
+/// a x b; the fourth lane means nothing.
+[[gnu::always_inline]] inline Row cross(const Row& a, const Row& b) {
+  const Row difference = a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
+  return __builtin_shufflevector(difference, difference, 1, 2, 0, 3);
+}
+
+/// Sums of g_i g_j^T, of r g_i g_j^T and of [g_i]x C [g_j]x^T by rows.
+template <bool kUniform, bool kCurved>
 struct Products {
-  Rows plain{}, weighted{};
+  Rows plain{}, weighted{}, curved{};
 
   [[gnu::always_inline]] void add(const float* gi, const float* gj) {
     const Row row = load(gj);
@@ -34,6 +41,15 @@ struct Products {
       plain[k] += outer;
       if constexpr (!kUniform) weighted[k] += gj[3] * outer;
     }
+  }
+
+  /// C: its three rows; null is none. Row k of C [g_j]x^T is g_j times row k of C.
+  [[gnu::always_inline]] void add_curvature(const float* gi, const float* gj, const float* C) {
+    if (C == nullptr) return;
+    const Row g = load(gj), w0 = cross(g, load(C)), w1 = cross(g, load(C + 4)), w2 = cross(g, load(C + 8));
+    curved[0] += gi[1] * w2 - gi[2] * w1;
+    curved[1] += gi[2] * w0 - gi[0] * w2;
+    curved[2] += gi[0] * w1 - gi[1] * w0;
   }
 };
 
@@ -63,15 +79,24 @@ struct Products {
   *reinterpret_cast<UnalignedRow*>(block + 5) = __builtin_shufflevector(row1, row2, 2, 4, 5, 6);
 }
 
-/// K_ij = L + P^T + tr(P) I and its transpose K_ji, by columns: the rows of K_ij are the columns of K_ji.
-template <bool kUniform>
-[[gnu::always_inline]] inline void store_pair(const Products<kUniform>& products, float ratio, float* block,
+[[gnu::always_inline]] inline Rows sum(const Rows& a, const Rows& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+/// K_ij = L + P^T + tr(P) I + curved and its transpose K_ji, by columns: the rows of K_ij are the columns of K_ji.
+template <bool kUniform, bool kCurved>
+[[gnu::always_inline]] inline void store_pair(const Products<kUniform, kCurved>& products, float ratio, float* block,
                                               float* mirror) {
   const Rows& P = products.plain;
   const Rows P_t = transposed(P);
   const Row diagonal = trace(P);
-  store(kUniform ? scaled(P, ratio) : products.weighted, P_t, diagonal, mirror);
-  store(kUniform ? scaled(P_t, ratio) : transposed(products.weighted), P, diagonal, block);
+  Rows L = kUniform ? scaled(P, ratio) : products.weighted;
+  if constexpr (kCurved) L = sum(L, products.curved);
+  store(L, P_t, diagonal, mirror);
+  if constexpr (kUniform && !kCurved)
+    store(scaled(P_t, ratio), P, diagonal, block);
+  else
+    store(transposed(L), P, diagonal, block);
 }
 
 }  // namespace
@@ -113,28 +138,47 @@ FloatAssembler::FloatAssembler(const std::vector<Tet>& tets, const NodeElements&
   references_.shrink_to_fit();
 }
 
-template <bool kUniform>
-void FloatAssembler::gather_row(const StepTerms& terms, double node_term, BlockMatrixf& matrix, std::size_t i) const {
+template <bool kUniform, bool kCurved>
+void FloatAssembler::gather_blocks(const StepTerms& terms, BlockMatrixf& matrix, std::size_t i) const {
   const float* const gradients = terms.gradients.data();
-  const float ratio = gradients[3];
-  Products<kUniform> own;
-  for (std::int64_t k = node_elements_.offsets[i]; k < node_elements_.offsets[i + 1]; ++k) {
-    const float* const g = gradients + std::size_t{4} * node_elements_.entries[static_cast<std::size_t>(k)];
-    own.add(g, g);
-  }
-  // A sum of g g^T is symmetric to the last bit as it is.
-  store(kUniform ? scaled(own.plain, ratio) : own.weighted, own.plain, trace(own.plain) + static_cast<float>(node_term),
-        matrix.block(diagonals_[i]));
   for (std::int64_t b = row_starts_[i]; b < row_starts_[i + 1]; ++b) {
     const Block& block = blocks_[static_cast<std::size_t>(b)];
     const std::uint32_t last = blocks_[static_cast<std::size_t>(b) + 1].first;
-    Products<kUniform> products;
+    Products<kUniform, kCurved> products;
     for (std::uint32_t r = block.first; r < last; ++r) {
       const std::size_t reference = references_[r];
-      products.add(gradients + 4 * (reference >> 2), gradients + 16 * (reference >> 4) + 4 * (reference & 3));
+      const float* const gi = gradients + 4 * (reference >> 2);
+      const float* const gj = gradients + 16 * (reference >> 4) + 4 * (reference & 3);
+      products.add(gi, gj);
+      if constexpr (kCurved) products.add_curvature(gi, gj, terms.curvature_of(reference >> 4));
     }
-    store_pair<kUniform>(products, ratio, matrix.block(block.position), matrix.block(block.mirror));
+    store_pair(products, gradients[3], matrix.block(block.position), matrix.block(block.mirror));
   }
+}
+
+template <bool kUniform, bool kCurved>
+void FloatAssembler::gather_row(const StepTerms& terms, double node_term, BlockMatrixf& matrix, std::size_t i) const {
+  const float* const gradients = terms.gradients.data();
+  Products<kUniform, kCurved> own;
+  bool has_curvature = false;
+  for (std::int64_t k = node_elements_.offsets[i]; k < node_elements_.offsets[i + 1]; ++k) {
+    const std::uint32_t entry = node_elements_.entries[static_cast<std::size_t>(k)];
+    const float* const g = gradients + std::size_t{4} * entry;
+    own.add(g, g);
+    if constexpr (kCurved) {
+      const float* const C = terms.curvature_of(entry / 4);
+      has_curvature = has_curvature || (C != nullptr && C[0] + C[5] + C[10] > 0);
+      own.add_curvature(g, g, C);
+    }
+  }
+  Rows L = kUniform ? scaled(own.plain, gradients[3]) : own.weighted;
+  // A sum of g g^T is symmetric to the last bit as it is.
+  if constexpr (kCurved) L = sum(L, scaled(sum(own.curved, transposed(own.curved)), 0.5F));
+  store(L, own.plain, trace(own.plain) + static_cast<float>(node_term), matrix.block(diagonals_[i]));
+  if (kCurved && has_curvature)
+    gather_blocks<kUniform, true>(terms, matrix, i);
+  else
+    gather_blocks<kUniform, false>(terms, matrix, i);
 }
 
 void FloatAssembler::assemble(const StepTerms& terms, std::span<const double> node_terms,
@@ -142,15 +186,20 @@ void FloatAssembler::assemble(const StepTerms& terms, std::span<const double> no
   CHECK(static_cast<std::int64_t>(matrix.values.size()) >= 9 * matrix.pattern.blocks());
   CHECK(node_terms.size() == diagonals_.size());
   CHECK((rows.empty() || rows.size() == diagonals_.size()));
+  const bool curved = std::any_of(terms.curvatures.begin(), terms.curvatures.end(),
+                                  [](const AlignedVector<float>& slab) { return !slab.empty(); });
+  const auto gather = [&](auto uniform, auto with_curvatures, std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+      if (rows.empty() || rows[i] != 0) gather_row<uniform(), with_curvatures()>(terms, node_terms[i], matrix, i);
+  };
   threads.for_chunks(static_cast<std::int64_t>(diagonals_.size()), kRowGrain,
                      [&](std::int64_t begin, std::int64_t end) {
-                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-                         if (!rows.empty() && rows[i] == 0) continue;
-                         if (terms.uniform_ratio)
-                           gather_row<true>(terms, node_terms[i], matrix, i);
-                         else
-                           gather_row<false>(terms, node_terms[i], matrix, i);
-                       }
+                       const std::true_type yes;
+                       const std::false_type no;
+                       if (terms.uniform_ratio && curved) gather(yes, yes, begin, end);
+                       if (terms.uniform_ratio && !curved) gather(yes, no, begin, end);
+                       if (!terms.uniform_ratio && curved) gather(no, yes, begin, end);
+                       if (!terms.uniform_ratio && !curved) gather(no, no, begin, end);
                      });
 }
 

@@ -5,6 +5,7 @@ namespace softreel {
 void find_step_terms(const ElasticBody& body, const StepSource& source, StepTerms& terms, const Threads& threads) {
   const std::span<const ElementBatch> batches = body.batches;
   terms.gradients.resize(16 * kElementLanes * batches.size());
+  terms.curvatures.resize(body.node_slabs.slab_offsets.size() - 1);
   terms.changed.resize(body.node_slabs.slab_offsets.size() - 1, 1);
   terms.forces.resize(4 * body.node_slabs.sums());
   const float expected = batches.empty() ? 0.0F : static_cast<float>(batches[0].lambda[0] / batches[0].mu[0]);

@@ -2,7 +2,8 @@
 /// the right side in double.
 ///
 /// Bound: an element reads 120 bytes of rest shape, 48 of rotation, share and places, its nodes from cache, and writes
-/// 64 bytes; about 330 multiplies and adds, 8 to 10 ns in four lanes of AVX2.
+/// 64 bytes; about 350 multiplies and adds, 8 to 10 ns in four lanes of AVX2. One under tension that the step must know
+/// of takes 800 more, with 24 divisions and 24 roots, and 48 bytes.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +17,33 @@
 
 namespace softreel {
 
+/// Floats that one element's curvature takes: three rows of three, each with one that is not used.
+inline constexpr std::size_t kCurvatureFloats = 12;
+
 /// Terms of the system of core/dynamics/step.cpp.
 struct StepTerms {
   /// g_i = sqrt(s V mu) Q b_i as x y z r with r = slope of the dilatation stress over mu: elements x 4 x 4.
   /// Block (i, j) of S gains r g_i g_j^T + g_j g_i^T + (g_i . g_j) I.
   AlignedVector<float> gradients;
-  /// Per slab: 1 if a gradient of it was replaced. Whoever makes a matrix of the gradients sets it back to 0.
+  /// C of core/elasticity/tension.h, by whose share block (i, j) gains [g_i]x C [g_j]x^T: per slab, empty where no
+  /// element has tension that the step must know of, else elements x kCurvatureFloats, zero for those without.
+  std::vector<AlignedVector<float>> curvatures;
+  /// Per slab: 1 if a gradient or curvature of it was replaced. Whoever makes a matrix of the gradients sets it back to
+  /// 0.
   std::vector<std::uint8_t> changed;
   /// With T = t V Q sigma, t times the derivative of V Q sigma along the offsets and s times that along the velocities:
-  /// the forces -T b_i on the nodes, N s, added up by slabs.
+  /// the forces -T b_i on the nodes, N s, added up by slabs. Derivatives are at fixed rotations, but for the
+  /// curvatures.
   AlignedVector<double> forces;
   /// True if r is the same in all elements.
   bool uniform_ratio = false;
+
+  /// Three rows of an element's C; null if its slab has none.
+  const float* curvature_of(std::size_t element) const {
+    constexpr std::size_t kSlabElements = kSlabBatches * kElementLanes;
+    const AlignedVector<float>& slab = curvatures[element / kSlabElements];
+    return slab.empty() ? nullptr : slab.data() + kCurvatureFloats * (element % kSlabElements);
+  }
 };
 
 /// How far one step reaches: with the acceleration a and the velocity v at its end, v = base + velocity_seconds * a and
@@ -46,8 +62,11 @@ struct StepSource {
   std::span<const double> damping_stiffness;  ///< b per element, s; its share in S is s = t (seconds.position + b)
   /// The positions at the step's end less those above and seconds.position * velocities, m; empty: zero.
   std::span<const Vec3> offsets;
-  /// Gradients that change by less than this share of themselves are left as they are; negative: none is.
+  /// Gradients that change by less than this share of themselves, and curvatures that change by less than it, are left
+  /// as they are; negative: none is.
   double kept_change = -1;
+  /// Pa s, per lane of the body's batches: find_tension_limits. Empty: no curvatures.
+  std::span<const double> tension_limits = {};
 };
 
 /// Fills `terms`; the vector twin of find_stiffness_terms, find_stresses and the product with K.

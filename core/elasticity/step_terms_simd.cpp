@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <experimental/simd>
 
 #include "core/elasticity/lane_elements.h"
+#include "core/elasticity/lane_tension.h"
 #include "core/elasticity/step_terms.h"
 
 namespace softreel {
@@ -58,6 +60,7 @@ struct Pressure {
 struct Stress {
   Symmetric value;
   Lanes slope;
+  bool tense = false;  ///< the positions may hold tension above the limit
 };
 
 [[gnu::always_inline]] inline Lanes trace(const Symmetric& s) {
@@ -69,16 +72,23 @@ struct Stress {
   return detail::symmetric_part(detail::transposed_product(rotation, gradient));
 }
 
-/// kOffsets: there are offsets, whose gradient is `offset_gradient`.
+[[gnu::always_inline]] inline Symmetric find_elastic_strain(const Matrix& rotation, const Matrix& F) {
+  Symmetric strain = find_strain(rotation, F);
+  for (const std::size_t k : {0, 3, 5}) strain[k] -= Lanes(1);
+  return strain;
+}
+
+/// kOffsets: there are offsets, whose gradient is `offset_gradient`. least: tension limit, Pa.
 template <bool kOffsets>
 [[gnu::always_inline]] inline Stress find_stress(const ElementBatch& batch, const Matrix& rotation, const Matrix& F,
                                                  const Matrix& velocity_gradient, const Matrix& offset_gradient,
-                                                 const Lanes& seconds, const Lanes& share) {
-  Symmetric strain = find_strain(rotation, F);
+                                                 const Lanes& seconds, const Lanes& share, const Lanes& least) {
+  Symmetric strain = find_elastic_strain(rotation, F);
   const Symmetric D = find_strain(rotation, velocity_gradient);
-  const Lanes one(1), two_mu = load(batch.mu) + load(batch.mu);
-  for (const std::size_t k : {0, 3, 5}) strain[k] -= one;
+  const Lanes mu = load(batch.mu), two_mu = mu + mu;
   Pressure pressure = find_pressure(batch, trace(strain));
+  const bool tense =
+      stdx::any_of(detail::may_be_tense(detail::TensionSource<Lanes>{strain, pressure.value, mu, least}));
   if constexpr (kOffsets) {
     const Symmetric O = find_strain(rotation, offset_gradient);
     for (std::size_t k = 0; k < 6; ++k) strain[k] += O[k];
@@ -87,7 +97,54 @@ template <bool kOffsets>
   const Lanes mean = seconds * pressure.value + share * (pressure.slope * trace(D));
   const auto deviator = [&](std::size_t k) { return two_mu * (seconds * strain[k] + share * D[k]); };
   return {{mean + deviator(0), deviator(1), deviator(2), mean + deviator(3), deviator(4), mean + deviator(5)},
-          pressure.slope};
+          pressure.slope,
+          tense};
+}
+
+[[gnu::always_inline]] inline Lanes find_damping(const StepSource& source, std::size_t first) {
+  const std::size_t last = source.rotations.size() - 1;
+  return Lanes([&](auto lane) { return source.damping_stiffness[std::min(first + lane, last)]; });
+}
+
+/// Tension limits of the batch that starts at element `first`, Pa; infinite without any.
+[[gnu::always_inline]] inline Lanes find_least_tension(const StepSource& source, std::size_t first) {
+  if (source.tension_limits.empty()) return std::numeric_limits<double>::infinity();
+  return load(source.tension_limits.data() + first) *
+         Lanes(1 / std::sqrt(source.seconds.velocity * source.seconds.position));
+}
+
+/// What tension above the limit adds to a batch: to the stress by its nodes' motion, and to the matrix.
+struct Curvature {
+  Vector moment;  ///< w, with which the stress in the frame of the rest shape gains [w]x
+  Symmetric C;    ///< in space, over the share of the gradients
+};
+
+/// Apart from the kernel, and from memory again, so that batches without tension keep what they have in registers.
+[[gnu::noinline]] Curvature find_curvature(const StepSource& source, const ElementBatch& batch, std::size_t first) {
+  const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
+  const Symmetric strain =
+      find_elastic_strain(Q, detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned));
+  const Lanes mu = load(batch.mu), reach(source.seconds.position);
+  detail::PrincipalAxes<Lanes> tension = detail::find_tension(detail::TensionSource<Lanes>{
+      strain, find_pressure(batch, trace(strain)).value, mu, find_least_tension(source, first)});
+  const auto curl_of = [&](std::span<const Vec3> vectors) {
+    return detail::curl(detail::transposed_product(Q, detail::gradient<Lanes>(batch, vectors, stdx::vector_aligned)));
+  };
+  Vector way = curl_of(source.velocities);
+  for (Lanes& w : way) w *= reach;
+  if (!source.offsets.empty()) {
+    const Vector offset = curl_of(source.offsets);
+    for (std::size_t c = 0; c < 3; ++c) way[c] += offset[c];
+  }
+  for (Lanes& w : way) w *= Lanes(source.seconds.velocity);
+  Curvature curvature{detail::product(detail::matrix_of(tension), way), {}};
+  const Lanes share = reach / ((reach + find_damping(source, first)) * mu);
+  for (std::size_t k = 0; k < 3; ++k) {
+    tension.values[k] *= share;
+    tension.axes[k] = detail::product(Q, tension.axes[k]);
+  }
+  curvature.C = detail::matrix_of(tension);
+  return curvature;
 }
 
 using NodeVectors = std::array<Vector, 4>;
@@ -134,6 +191,63 @@ using NodeVectors = std::array<Vector, 4>;
   return any;
 }
 
+/// The curvatures of a slab's elements: no memory as long as there are none.
+class StoredCurvatures {
+ public:
+  /// kept: as above, but of C itself, beside which the block of an element has a share of 1.
+  StoredCurvatures(AlignedVector<float>& stored, std::size_t first_batch, float kept)
+      : stored_(stored), first_batch_(first_batch), kept_(kept) {}
+
+  /// Replaces those of the first `elements` lanes of batch b that change; true if there are any.
+  bool store(std::size_t b, const Symmetric& C, std::size_t elements) {
+    if (stored_.empty()) stored_.resize(kSlabBatches * kElementLanes * kCurvatureFloats, 0.0F);
+    bool any = false;
+    alignas(32) double entries[6][kElementLanes];
+    for (std::size_t k = 0; k < 6; ++k) C[k].copy_to(entries[k], stdx::vector_aligned);
+    for (std::size_t lane = 0; lane < elements; ++lane) {
+      const auto entry = [&](std::size_t k) { return static_cast<float>(entries[k][lane]); };
+      any |=
+          replace({entry(0), entry(1), entry(2), 0, entry(1), entry(3), entry(4), 0, entry(2), entry(4), entry(5), 0},
+                  rows(b, lane));
+    }
+    return any;
+  }
+
+  /// The same for elements without tension.
+  bool clear(std::size_t b, std::size_t elements) {
+    if (stored_.empty()) return false;
+    bool any = false;
+    for (std::size_t lane = 0; lane < elements; ++lane) any |= replace({}, rows(b, lane));
+    return any;
+  }
+
+  /// After the last batch: gives the memory back if no element has any.
+  void finish() {
+    if (!nonzero_) AlignedVector<float>().swap(stored_);
+  }
+
+ private:
+  using Entries = std::array<float, kCurvatureFloats>;
+
+  float* rows(std::size_t b, std::size_t lane) {
+    return stored_.data() + kCurvatureFloats * (kElementLanes * (b - first_batch_) + lane);
+  }
+
+  bool replace(const Entries& fresh, float* rows) {
+    float change = 0;
+    for (std::size_t k = 0; k < kCurvatureFloats; ++k) change += (fresh[k] - rows[k]) * (fresh[k] - rows[k]);
+    const bool changes = change > 0 && !(change <= kept_);
+    if (changes) std::copy(fresh.begin(), fresh.end(), rows);
+    nonzero_ = nonzero_ || rows[0] + rows[5] + rows[10] > 0;
+    return changes;
+  }
+
+  AlignedVector<float>& stored_;
+  std::size_t first_batch_;
+  float kept_;
+  bool nonzero_ = false;
+};
+
 /// Takes the forces of the first `elements` lanes off the slab's sums, in the order of elements.
 [[gnu::always_inline]] inline void subtract_forces(const NodeVectors& f, std::size_t elements,
                                                    const std::uint16_t* places, double* sums) {
@@ -150,36 +264,46 @@ template <bool kOffsets>
 std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float expected_ratio, StepTerms& terms,
                        std::size_t slab) {
   std::int64_t different = 0;
-  const std::size_t elements = source.rotations.size(), last = elements - 1, begin = kSlabBatches * slab,
+  const std::size_t elements = source.rotations.size(), begin = kSlabBatches * slab,
                     end = std::min(begin + kSlabBatches, body.batches.size());
   const NodeSlabs& slabs = body.node_slabs;
   double* const sums = terms.forces.data() + std::size_t{4} * slabs.slab_offsets[slab];
   std::fill(sums, terms.forces.data() + std::size_t{4} * slabs.slab_offsets[slab + 1], 0.0);
   const auto kept = static_cast<float>(source.kept_change * std::abs(source.kept_change));
   bool changed = false;
+  StoredCurvatures curvatures(terms.curvatures[slab], begin, kept);
   const Lanes seconds(source.seconds.velocity), reach(source.seconds.position);
   for (std::size_t b = begin; b < end; ++b) {
     const ElementBatch& batch = body.batches[b];
     const std::size_t first = kElementLanes * b;
     const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
-    const Lanes share =
-        seconds * (reach + Lanes([&](auto lane) { return source.damping_stiffness[std::min(first + lane, last)]; }));
+    const Lanes share = seconds * (reach + find_damping(source, first));
     const Matrix F = detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned);
     const Matrix G = detail::gradient<Lanes>(batch, source.velocities, stdx::vector_aligned);
     Matrix offset_gradient{};
     if constexpr (kOffsets) offset_gradient = detail::gradient<Lanes>(batch, source.offsets, stdx::vector_aligned);
-    const Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share);
+    const Stress stress =
+        find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share, find_least_tension(source, first));
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;
     Matrix T = detail::product(Q, stress.value), scaled = Q;
+    const std::size_t count = std::min(kElementLanes, elements - first);
+    if (stress.tense) {
+      const Curvature curvature = find_curvature(source, batch, first);
+      detail::add_cross_product(Q, curvature.moment, T);
+      changed |= curvatures.store(b, curvature.C, count);
+    } else {
+      changed |= curvatures.clear(b, count);
+    }
     const Lanes scale = stdx::sqrt(share * volume * mu);
     for (std::size_t k = 0; k < 9; ++k) {
       T[k] *= volume;
       scaled[k] *= scale;
     }
     changed |= store_gradients(find_products(batch, scaled), ratio, kept, terms.gradients.data() + 16 * first);
-    subtract_forces(find_products(batch, T), std::min(kElementLanes, elements - first), slabs.places_of(b), sums);
+    subtract_forces(find_products(batch, T), count, slabs.places_of(b), sums);
     different += stdx::popcount(stdx::static_simd_cast<Floats>(ratio) != Floats(expected_ratio));
   }
+  curvatures.finish();
   if (changed) terms.changed[slab] = 1;
   return different;
 }

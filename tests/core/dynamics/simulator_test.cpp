@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -255,6 +256,29 @@ TEST(Simulator, BlamesAnElementForWhatIsNotANumber) {
     EXPECT_NE(report.culprit.find("body.bar: element "), std::string::npos) << report.culprit;
     EXPECT_NE(report.culprit.find("not finite"), std::string::npos) << report.culprit;
     EXPECT_EQ(bench.simulator.state().positions[6], state.positions[6]);
+  }
+}
+
+TEST(Simulator, BlamesThePullForAForceThatIsNotANumber) {
+  for (const Linearize linearize : {Linearize::Auto, Linearize::Iterated}) {
+    BodyModel model = body_model(small_bar(), soft());
+    Transform away;
+    away.translate = Vec3(0, 2, 0);
+    for (const double stiffness : {1e3, 1e300})
+      model.pulls.push_back({fmt::format("body.bar.pull[{}]", model.pulls.size()),
+                             {0},
+                             {1.0},
+                             {{{0, away, Ease::Constant}}},
+                             {{{0, stiffness, Ease::Constant}}},
+                             0,
+                             {}});
+    SolverParams params;
+    params.linearize = linearize;
+    Bench bench(model, params);
+    const StepReport report = bench.simulator.step(1, 1.0 / 24);
+    EXPECT_FALSE(report.ok());
+    EXPECT_EQ(report.culprit.find("body.bar.pull[1]"), 0U) << report.culprit;
+    EXPECT_NE(report.culprit.find("1e+300 N/m"), std::string::npos) << report.culprit;
   }
 }
 
