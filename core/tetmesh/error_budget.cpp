@@ -89,7 +89,7 @@ class Filling {
         octree_(frame_, used_bounds(surface), params.finer + params.coarser),
         sampler_(surface.positions, surface.triangles, frame_),
         visible_(find_visible(surface, sampler_, error_, threads)),
-        samples_(sample_surface(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)),
+        samples_(sample_surface_once(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)),
         caps_(surface.positions, surface.triangles, sampler_.tree()) {
     for (std::size_t t = 0; t < surface.triangles.size(); ++t)
       octree_.refine(corners(surface.positions, surface.triangles[t]), params.finer);
