@@ -132,8 +132,7 @@ class Filling {
   /// What the boundary has to follow; the surface as it is, unless it overlaps itself.
   static SurfaceMesh find_visible(const SurfaceMesh& surface, const DistanceSampler& sampler, double error,
                                   const Threads& threads) {
-    if (sampler.overlaps())
-      return without_hidden(surface, std::vector<std::uint8_t>(surface.triangles.size(), 1), error, threads);
+    if (!sampler.near_overlaps().empty()) return without_hidden(surface, sampler.near_overlaps(), error, threads);
     SurfaceMesh visible;
     visible.positions = surface.positions;
     visible.triangles = surface.triangles;

@@ -6,6 +6,7 @@
 
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/narrow_band.h"
+#include "core/tetmesh/overlaps.h"
 #include "core/tetmesh/row_crossings.h"
 #include "core/tetmesh/winding_number.h"
 
@@ -103,7 +104,7 @@ DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::
   Bounds box;
   for (const Vec3& p : positions) box.add(p);
   while (rows.spacing * kMostRows < box.diagonal()) rows.spacing *= 2;
-  overlaps_ = RowCrossings(positions, triangles, rows).overlaps();
+  near_overlaps_ = find_near_overlaps(positions, triangles, rows);
 }
 
 SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, const std::vector<double>& reaches,

@@ -42,13 +42,14 @@ class DistanceSampler {
                          const Threads& threads) const;
 
   const TriangleTree& tree() const { return tree_; }
-  /// Whether the surface is closed and goes more than once round some place, on rows of the lattice or on some of them.
-  bool overlaps() const { return overlaps_; }
+  /// Triangles near a place that the surface, if it is closed, goes more than once round on some of the lattice's rows:
+  /// 1 where overlapping pieces may hide one. Empty: no row has such a place.
+  const std::vector<std::uint8_t>& near_overlaps() const { return near_overlaps_; }
 
  private:
   LatticeFrame frame_;
   TriangleTree tree_;
-  bool overlaps_ = false;
+  std::vector<std::uint8_t> near_overlaps_;
   std::optional<WindingNumber> winding_;  ///< of an open surface
 };
 
