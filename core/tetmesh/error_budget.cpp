@@ -78,21 +78,35 @@ double guess_error(const SurfaceMesh& surface, double tets) {
   return std::sqrt(kTetsPerSquare * area_of(surface) / (kBaseShare * tets)) / kBaseEdge;
 }
 
+/// The surface as all fillings of a search see it.
+struct FilledSurface {
+  explicit FilledSurface(const SurfaceMesh& mesh)
+      : surface(mesh),
+        sampler(mesh.positions, mesh.triangles),
+        caps(mesh.positions, mesh.triangles, sampler.tree()),
+        box(used_bounds(mesh)) {}
+
+  const SurfaceMesh& surface;
+  DistanceSampler sampler;
+  HoleCaps caps;
+  Bounds box;
+};
+
 class Filling {
  public:
-  Filling(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads)
+  Filling(const FilledSurface& filled, const ErrorBudgetParams& params, const Threads& threads)
       : params_(params),
         threads_(threads),
         base_edge_(params.base_edge > 0 ? params.base_edge : kBaseEdge * params.error),
         error_(params.error > 0 ? params.error : base_edge_ / kBaseEdge),
-        frame_{used_bounds(surface).center(), std::ldexp(base_edge_, -params.finer)},
-        octree_(frame_, used_bounds(surface), params.finer + params.coarser),
-        sampler_(surface.positions, surface.triangles, frame_),
-        visible_(find_visible(surface, sampler_, error_, threads)),
-        samples_(sample_surface_once(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)),
-        caps_(surface.positions, surface.triangles, sampler_.tree()) {
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-      octree_.refine(corners(surface.positions, surface.triangles[t]), params.finer);
+        frame_{filled.box.center(), std::ldexp(base_edge_, -params.finer)},
+        octree_(frame_, filled.box, params.finer + params.coarser),
+        sampler_(filled.sampler),
+        caps_(filled.caps),
+        visible_(find_visible(filled.surface, sampler_, error_, threads)),
+        samples_(sample_surface_once(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)) {
+    for (const Triangle& triangle : filled.surface.triangles)
+      octree_.refine(corners(filled.surface.positions, triangle), params.finer);
   }
 
   GradedFilling run() {
@@ -179,7 +193,7 @@ class Filling {
   GradedFilling fill() {
     GradedFilling filling;
     const LatticeNodeSet nodes = octree_.nodes();
-    filling.distance = sampler_.sample(nodes, octree_.widths(nodes), known_, threads_);
+    filling.distance = sampler_.sample(frame_, nodes, octree_.widths(nodes), known_, threads_);
     known_ = filling.distance;
     filling.stuffed = stuff_octree(octree_, nodes, filling.distance.lattice.values);
     mend_boundary(filling.stuffed);
@@ -271,11 +285,11 @@ class Filling {
   int narrowest_round_ = 0;
   LatticeFrame frame_;
   GradedOctree octree_;
-  DistanceSampler sampler_;
+  const DistanceSampler& sampler_;
+  const HoleCaps& caps_;
   SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap
   std::vector<Vec3> samples_;
   FitMemory memory_;
-  HoleCaps caps_;
   SurfaceDistance known_;  ///< of the filling before
 };
 
@@ -301,13 +315,14 @@ double next_error(const std::optional<Tried>& few, const std::optional<Tried>& m
 }
 
 GradedFilling fill_to_count(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
+  const FilledSurface filled(surface);
   GradedFilling best;
   double best_miss = 1e300, error = std::log(guess_error(surface, params.tets));
   std::optional<Tried> few, many;
   for (int step = 0; step < kCountSteps && best_miss > kCountTolerance; ++step) {
     ErrorBudgetParams to_error = params;
     to_error.error = std::exp(error);
-    GradedFilling filling = Filling(surface, to_error, threads).run();
+    GradedFilling filling = Filling(filled, to_error, threads).run();
     const double count = std::max(1.0, static_cast<double>(filling.stuffed.mesh.tets.size()));
     (count < params.tets ? few : many) = Tried{error, std::log(count)};
     const double miss = std::abs(count / params.tets - 1);
@@ -323,7 +338,9 @@ GradedFilling fill_to_count(const SurfaceMesh& surface, const ErrorBudgetParams&
 }  // namespace
 
 GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
-  return params.tets > 0 ? fill_to_count(surface, params, threads) : Filling(surface, params, threads).run();
+  if (params.tets > 0) return fill_to_count(surface, params, threads);
+  const FilledSurface filled(surface);
+  return Filling(filled, params, threads).run();
 }
 
 }  // namespace softreel

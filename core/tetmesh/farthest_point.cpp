@@ -12,7 +12,7 @@ constexpr std::int64_t kGrain = 256;
 constexpr double kSmallest = 0.25;
 
 /// Where only what is further than a limit is asked for, a triangle nearer than this share of it is near enough.
-constexpr double kNear = 0.5;
+constexpr double kNear = 0.6;
 
 /// A point and the triangle of the tree that is nearest to it.
 struct Probe {

@@ -32,14 +32,12 @@ SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::
 /// The same for nodes of any choice: those of an octree, whose sizes differ.
 class DistanceSampler {
  public:
-  /// frame: the finest lattice, which all nodes belong to.
-  DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                  const LatticeFrame& frame);
+  DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
-  /// Distances of all `nodes` (numbered), m; at most `reaches`, one a node. What `known`, an earlier result, has is
-  /// taken from there.
-  SurfaceDistance sample(const LatticeNodeSet& nodes, const std::vector<double>& reaches, const SurfaceDistance& known,
-                         const Threads& threads) const;
+  /// Distances of all `nodes` (numbered, of the lattice at `frame`), m; at most `reaches`, one a node. What `known`, an
+  /// earlier result, has is taken from there.
+  SurfaceDistance sample(const LatticeFrame& frame, const LatticeNodeSet& nodes, const std::vector<double>& reaches,
+                         const SurfaceDistance& known, const Threads& threads) const;
 
   const TriangleTree& tree() const { return tree_; }
   /// Triangles near a place that the surface, if it is closed, goes more than once round on some of the lattice's rows:
@@ -47,7 +45,6 @@ class DistanceSampler {
   const std::vector<std::uint8_t>& near_overlaps() const { return near_overlaps_; }
 
  private:
-  LatticeFrame frame_;
   TriangleTree tree_;
   std::vector<std::uint8_t> near_overlaps_;
   std::optional<WindingNumber> winding_;  ///< of an open surface
