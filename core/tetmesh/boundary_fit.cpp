@@ -36,7 +36,7 @@ double cubed(double x) {
 /// The boundary nodes and their stars, and the elements while they are fitted.
 class BoundaryFit::Fit {
  public:
-  Fit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples, const BoundaryFitParams& params,
+  Fit(StuffedMesh& stuffed, const TriangleTree& tree, std::span<const Vec3> samples, const BoundaryFitParams& params,
       const Threads& threads, FitMemory* memory)
       : mesh_(stuffed.mesh),
         params_(params),
@@ -274,7 +274,7 @@ class BoundaryFit::Fit {
   std::vector<std::uint8_t> settled_;  ///< per boundary node: could not move, and nothing near it changed since
 };
 
-BoundaryFit::BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples,
+BoundaryFit::BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, std::span<const Vec3> samples,
                          const BoundaryFitParams& params, const Threads& threads, FitMemory* memory)
     : fit_(std::make_unique<Fit>(stuffed, tree, samples, params, threads, memory)) {
   fit_->run();

@@ -36,9 +36,15 @@ class Search {
   }
 
   double best() const { return best_; }
+  /// The point that is so far away, if visit() found one.
+  const Vec3& farthest() const { return farthest_; }
 
   void visit(const Probe& a, const Probe& b, const Probe& c) {
-    best_ = std::max({best_, a.distance, b.distance, c.distance});
+    for (const Probe* p : {&a, &b, &c})
+      if (p->distance > best_) {
+        best_ = p->distance;
+        farthest_ = p->point;
+      }
     const double longest = std::sqrt(std::max(
         {(a.point - b.point).squaredNorm(), (b.point - c.point).squaredNorm(), (c.point - a.point).squaredNorm()}));
     if (!(longest > smallest_)) return;
@@ -89,6 +95,7 @@ class Search {
 
   const TriangleTree& tree_;
   double best_, smallest_, tolerance_, enough_;
+  Vec3 farthest_ = Vec3::Zero();
 };
 
 double edge_sum(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -167,6 +174,11 @@ void visit_far(const std::vector<Vec3>& points, const std::vector<Triangle>& tri
       const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
       far.clear();
       search.collect(corner(0), corner(1), corner(2), far);
+      if (!far.empty()) {
+        Search farthest = search;
+        farthest.visit(corner(0), corner(1), corner(2));
+        far.push_back(farthest.farthest());
+      }
       with(t, far);
     }
   });

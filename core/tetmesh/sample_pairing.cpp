@@ -21,12 +21,12 @@ std::size_t at(Index i) {
 
 }  // namespace
 
-SamplePairing::SamplePairing(const std::vector<Vec3>& samples, const BoundaryStars& stars, const TetMesh& mesh,
+SamplePairing::SamplePairing(std::span<const Vec3> samples, const BoundaryStars& stars, const TetMesh& mesh,
                              double near)
     : samples_(samples), stars_(stars), mesh_(mesh), near_(near), near_faces_(samples.size()) {}
 
 void SamplePairing::recall(const FitMemory& memory, const Recollection& known) {
-  for (std::size_t s = 0; s < near_faces_.size(); ++s) {
+  for (std::size_t s = 0; s < std::min(near_faces_.size(), memory.samples.size()); ++s) {
     const NearTriangle& old = memory.samples[s];
     if (const Index face = old.number < 0 ? -1 : known.new_faces[at(old.number)]; face >= 0)
       near_faces_[s] = {face, old.squared};

@@ -16,9 +16,10 @@ namespace softreel {
 class SamplePairing {
  public:
   /// near: squared, m^2; of faces nearer to a sample than that any will do.
-  SamplePairing(const std::vector<Vec3>& samples, const BoundaryStars& stars, const TetMesh& mesh, double near);
+  SamplePairing(std::span<const Vec3> samples, const BoundaryStars& stars, const TetMesh& mesh, double near);
 
-  /// Takes over what an earlier fit found at the same faces. It stands for those that do not move.
+  /// Takes over what an earlier fit, to samples that begin with the same ones, found at the same faces. It stands for
+  /// those that do not move.
   void recall(const FitMemory& memory, const Recollection& known);
 
   /// Finds the nearest faces again where something moved. moved: per boundary node. Returns per face whether it won or
@@ -39,7 +40,7 @@ class SamplePairing {
   bool has_moved(Index face, const std::vector<std::uint8_t>& moved) const;
   void list_samples();
 
-  const std::vector<Vec3>& samples_;
+  std::span<const Vec3> samples_;
   const BoundaryStars& stars_;
   const TetMesh& mesh_;
   double near_;

@@ -67,4 +67,23 @@ std::vector<Vec3> sample_surface_once(const SurfaceMesh& surface, const std::vec
   return samples;
 }
 
+std::size_t put_coarse_first(std::vector<Vec3>& points, double width) {
+  KeyIndex cubes;
+  const auto takes_cube = [&](const Vec3& p) {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k)
+      key = key * 0x100001b3ULL + static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p[k] / width)));
+    return cubes.insert(key).second;  // two cubes of one key, which are rare, share a point
+  };
+  std::vector<Vec3> rest;
+  std::size_t coarse = 0;
+  for (const Vec3& p : points)
+    if (takes_cube(p))
+      points[coarse++] = Vec3(p);
+    else
+      rest.push_back(p);
+  std::copy(rest.begin(), rest.end(), points.begin() + static_cast<std::ptrdiff_t>(coarse));
+  return coarse;
+}
+
 }  // namespace softreel

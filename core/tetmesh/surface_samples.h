@@ -15,4 +15,8 @@ std::vector<Vec3> sample_surface(const SurfaceMesh& surface, const std::vector<I
 /// more where triangles are about as long as the step.
 std::vector<Vec3> sample_surface_once(const SurfaceMesh& surface, const std::vector<Index>& order, double step);
 
+/// Puts some points first, about one in each cube of this width, and leaves both kinds in their order. Returns how many
+/// they are.
+std::size_t put_coarse_first(std::vector<Vec3>& points, double width);
+
 }  // namespace softreel
