@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
@@ -47,7 +48,15 @@ constexpr int kPatience = 12;
 constexpr double kLooseShare = 0.02;
 
 /// The error falls with the number of tetrahedra to about this power; met on smooth and sharp bodies alike.
-constexpr double kErrorOverCount = 0.75;
+constexpr double kErrorOverCount = 0.6;
+
+/// After so many rounds the number of elements is known but for a factor that depends on the surface, and on the error
+/// little. A filling that will have less than this share of the wanted number is given up there.
+constexpr int kTrialRounds = 4;
+constexpr double kUsualGrowth = 1.2, kTooFew = 0.88;
+
+/// From this share of the wanted number on only gaps are mended that keep a filling from its end.
+constexpr double kNearlyFull = 0.85;
 
 /// So many errors are tried for a count. A filling that has it ends where no gap is wider than so many errors: what
 /// comes after mends single places, and may add and spoil others.
@@ -57,8 +66,8 @@ constexpr double kNearlyKept = 1.3;
 /// How near to the wanted number is near enough.
 constexpr double kCountTolerance = 0.05;
 
-/// Samples are this many budgets apart.
-constexpr double kSampleStep = 2.0;
+/// Samples are this many budgets apart, those of the first rounds so many.
+constexpr double kSampleStep = 2.0, kFirstSampleStep = 4.0;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -78,21 +87,39 @@ double guess_error(const SurfaceMesh& surface, double tets) {
   return std::sqrt(kTetsPerSquare * area_of(surface) / (kBaseShare * tets)) / kBaseEdge;
 }
 
+/// The surface as all fillings of a search see it.
+struct FilledSurface {
+  explicit FilledSurface(const SurfaceMesh& mesh)
+      : surface(mesh),
+        sampler(mesh.positions, mesh.triangles),
+        caps(mesh.positions, mesh.triangles, sampler.tree()),
+        box(used_bounds(mesh)) {}
+
+  const SurfaceMesh& surface;
+  DistanceSampler sampler;
+  HoleCaps caps;
+  Bounds box;
+};
+
 class Filling {
  public:
-  Filling(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads)
-      : params_(params),
+  /// growth: of an earlier filling of this surface, if there was one.
+  Filling(const FilledSurface& filled, const ErrorBudgetParams& params, const Threads& threads,
+          std::optional<double> growth = {})
+      : growth_(growth),
+        params_(params),
         threads_(threads),
         base_edge_(params.base_edge > 0 ? params.base_edge : kBaseEdge * params.error),
         error_(params.error > 0 ? params.error : base_edge_ / kBaseEdge),
-        frame_{used_bounds(surface).center(), std::ldexp(base_edge_, -params.finer)},
-        octree_(frame_, used_bounds(surface), params.finer + params.coarser),
-        sampler_(surface.positions, surface.triangles, frame_),
-        visible_(find_visible(surface, sampler_, error_, threads)),
-        samples_(sample_surface(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)),
-        caps_(surface.positions, surface.triangles, sampler_.tree()) {
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-      octree_.refine(corners(surface.positions, surface.triangles[t]), params.finer);
+        frame_{filled.box.center(), std::ldexp(base_edge_, -params.finer)},
+        octree_(frame_, filled.box, params.finer + params.coarser),
+        sampler_(filled.sampler),
+        caps_(filled.caps),
+        visible_(find_visible(filled.surface, sampler_, error_, threads)),
+        samples_(sample_surface_once(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)),
+        first_samples_(put_coarse_first(samples_, kFirstSampleStep * error_)) {
+    for (const Triangle& triangle : filled.surface.triangles)
+      octree_.refine(corners(filled.surface.positions, triangle), params.finer);
   }
 
   GradedFilling run() {
@@ -102,11 +129,15 @@ class Filling {
       filling = fill();
       std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
       add_loose_pieces(filling.stuffed, gaps);
-      const bool is_certain = gaps.empty();
+      // What looks like an end is looked at again: between samples there may be wider gaps.
+      const bool is_certain = gaps.empty() || (is_near_count(filling) && is_nearly_kept(gaps));
       if (is_certain) gaps = find_gaps(filling.stuffed);
       filling.is_kept = gaps.empty();
+      if (params_.tets > 0) {
+        if (has_ended(filling, gaps, round)) break;
+        if (share_of_count(filling) > kNearlyFull && !is_nearly_kept(gaps)) leave_out_narrow(gaps);
+      }
       const double margin = round < kSingleRounds ? 0.0 : 0.5;
-      if (has_count(filling) && widest(gaps) < kNearlyKept * error_) break;
       if (!gaps.empty() && is_stuck(gaps, round)) break;
       if (round + 1 == rounds || refine(filling.stuffed, gaps, margin)) continue;
       // Samples that no size reaches hide what lies between others.
@@ -115,6 +146,12 @@ class Filling {
     }
     return filling;
   }
+
+  /// Of a search for a count: the number of elements that the error takes in the end, in wanted numbers. A filling that
+  /// will not have it is given up early.
+  double expected_share() const { return expected_share_; }
+  /// By what factor the number of elements grew after the first kTrialRounds.
+  double growth() const { return expected_share_ / trial_share_; }
 
  private:
   static std::array<Vec3, 3> corners(const std::vector<Vec3>& points, const Triangle& triangle) {
@@ -132,17 +169,42 @@ class Filling {
   /// What the boundary has to follow; the surface as it is, unless it overlaps itself.
   static SurfaceMesh find_visible(const SurfaceMesh& surface, const DistanceSampler& sampler, double error,
                                   const Threads& threads) {
-    if (sampler.overlaps())
-      return without_hidden(surface, std::vector<std::uint8_t>(surface.triangles.size(), 1), error, threads);
+    if (!sampler.near_overlaps().empty()) return without_hidden(surface, sampler.near_overlaps(), error, threads);
     SurfaceMesh visible;
     visible.positions = surface.positions;
     visible.triangles = surface.triangles;
     return visible;
   }
 
-  bool has_count(const GradedFilling& filling) const {
-    const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
-    return params_.tets > 0 && std::abs(count / params_.tets - 1) <= kCountTolerance;
+  double share_of_count(const GradedFilling& filling) const {
+    return static_cast<double>(filling.stuffed.mesh.tets.size()) / params_.tets;
+  }
+  bool is_near_count(const GradedFilling& filling) const {
+    return params_.tets > 0 && std::abs(share_of_count(filling) - 1) <= kCountTolerance;
+  }
+  bool is_nearly_kept(const std::vector<BoundaryGap>& gaps) const { return widest(gaps) < kNearlyKept * error_; }
+
+  /// What a filling that has its count but for a little may leave as it is.
+  void leave_out_narrow(std::vector<BoundaryGap>& gaps) const {
+    std::erase_if(
+        gaps, [&](const BoundaryGap& gap) { return (gap.on_surface - gap.on_boundary).norm() < kNearlyKept * error_; });
+  }
+
+  /// Whether a filling on the way to a count is near enough, or will not come near.
+  bool has_ended(const GradedFilling& filling, const std::vector<BoundaryGap>& gaps, int round) {
+    const double share = share_of_count(filling);
+    if (round < kTrialRounds) trial_share_ = share;
+    const double foreseen = trial_share_ * growth_.value_or(kUsualGrowth);
+    expected_share_ = share;
+    if (share > 1 + kCountTolerance) {
+      expected_share_ = std::max(share, foreseen);
+      return true;
+    }
+    if (round + 1 == kTrialRounds && growth_ && foreseen < kTooFew) {
+      expected_share_ = foreseen;
+      return true;
+    }
+    return is_near_count(filling) && is_nearly_kept(gaps);
   }
 
   /// Whether the widest gap has long been no narrower than before: no size mends it. The rim of a hole can be such a
@@ -180,7 +242,7 @@ class Filling {
   GradedFilling fill() {
     GradedFilling filling;
     const LatticeNodeSet nodes = octree_.nodes();
-    filling.distance = sampler_.sample(nodes, octree_.widths(nodes), known_, threads_);
+    filling.distance = sampler_.sample(frame_, nodes, octree_.widths(nodes), known_, threads_);
     known_ = filling.distance;
     filling.stuffed = stuff_octree(octree_, nodes, filling.distance.lattice.values);
     mend_boundary(filling.stuffed);
@@ -195,7 +257,8 @@ class Filling {
     fit_params.tolerance = params_.fit_tolerance * error_ / base_edge_;
     fit_params.sweeps = round < kFirstRounds ? kFirstSweeps : kSweeps;
     if (stuffed.mesh.tets.empty()) return everywhere();
-    const BoundaryFit fitted(stuffed, sampler_.tree(), samples_, fit_params, threads_, &memory_);
+    const std::span<const Vec3> samples(samples_.data(), round < kFirstRounds ? first_samples_ : samples_.size());
+    const BoundaryFit fitted(stuffed, sampler_.tree(), samples, fit_params, threads_, &memory_);
     std::vector<BoundaryGap> gaps = fitted.gaps((round < kFirstRounds ? kFirstLimit : kEnough) * error_);
     leave_out_holes(gaps);
     return gaps;
@@ -265,6 +328,8 @@ class Filling {
     return octree_.cells().size() > before;
   }
 
+  std::optional<double> growth_;
+  double expected_share_ = 1, trial_share_ = 1;
   const ErrorBudgetParams& params_;
   const Threads& threads_;
   double base_edge_, error_;
@@ -272,11 +337,12 @@ class Filling {
   int narrowest_round_ = 0;
   LatticeFrame frame_;
   GradedOctree octree_;
-  DistanceSampler sampler_;
+  const DistanceSampler& sampler_;
+  const HoleCaps& caps_;
   SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap
   std::vector<Vec3> samples_;
+  std::size_t first_samples_;  ///< of them: for the first rounds
   FitMemory memory_;
-  HoleCaps caps_;
   SurfaceDistance known_;  ///< of the filling before
 };
 
@@ -284,39 +350,43 @@ class Filling {
 
 namespace {
 
-/// An error with the number of tetrahedra that it takes, as logarithms.
+/// An error with the share of the wanted number of tetrahedra that it takes, as logarithms.
 struct Tried {
-  double error, count;
+  double error, share;
 };
 
 /// The next error to try for a count: between the nearest ones that gave too many and too few, or from one of them by
 /// the usual slope.
-double next_error(const std::optional<Tried>& few, const std::optional<Tried>& many, double wanted) {
+double next_error(const std::optional<Tried>& few, const std::optional<Tried>& many) {
   if (!few || !many) {
     const Tried& known = few ? *few : *many;
-    return known.error + kErrorOverCount * (known.count - wanted);
+    return known.error + kErrorOverCount * known.share;
   }
   // Not too near to either, lest counts that jump stop the search.
-  const double share = std::clamp((wanted - few->count) / (many->count - few->count), 0.15, 0.85);
+  const double share = std::clamp(few->share / (few->share - many->share), 0.15, 0.85);
   return few->error + share * (many->error - few->error);
 }
 
 GradedFilling fill_to_count(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
+  const FilledSurface filled(surface);
   GradedFilling best;
   double best_miss = 1e300, error = std::log(guess_error(surface, params.tets));
+  std::optional<double> growth;
   std::optional<Tried> few, many;
   for (int step = 0; step < kCountSteps && best_miss > kCountTolerance; ++step) {
     ErrorBudgetParams to_error = params;
     to_error.error = std::exp(error);
-    GradedFilling filling = Filling(surface, to_error, threads).run();
-    const double count = std::max(1.0, static_cast<double>(filling.stuffed.mesh.tets.size()));
-    (count < params.tets ? few : many) = Tried{error, std::log(count)};
-    const double miss = std::abs(count / params.tets - 1);
+    Filling trial(filled, to_error, threads, growth);
+    GradedFilling filling = trial.run();
+    const double expected = std::log(std::max(1e-6, trial.expected_share()));
+    (expected < 0 ? few : many) = Tried{error, expected};
+    if (expected < 0 && !growth) growth = trial.growth();
+    const double miss = std::abs(static_cast<double>(filling.stuffed.mesh.tets.size()) / params.tets - 1);
     if (miss < best_miss) {
       best_miss = miss;
       best = std::move(filling);
     }
-    error = next_error(few, many, std::log(params.tets));
+    error = next_error(few, many);
   }
   return best;
 }
@@ -324,7 +394,9 @@ GradedFilling fill_to_count(const SurfaceMesh& surface, const ErrorBudgetParams&
 }  // namespace
 
 GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
-  return params.tets > 0 ? fill_to_count(surface, params, threads) : Filling(surface, params, threads).run();
+  if (params.tets > 0) return fill_to_count(surface, params, threads);
+  const FilledSurface filled(surface);
+  return Filling(filled, params, threads).run();
 }
 
 }  // namespace softreel

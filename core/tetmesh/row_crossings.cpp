@@ -96,17 +96,6 @@ int RowCrossings::winding(const LatticeNode& node) const {
   return winding;
 }
 
-bool RowCrossings::overlaps() const {
-  for (std::size_t r = 0; r + 1 < row_begins_.size(); ++r) {
-    int winding = 0;
-    for (Index c = row_begins_[r]; c < row_begins_[r + 1]; ++c) {
-      winding -= crossings_[static_cast<std::size_t>(c)].sign;
-      if (std::abs(winding) > 1) return true;
-    }
-  }
-  return false;
-}
-
 int winding_of_node(const TriangleTree& tree, const LatticeFrame& frame, const LatticeNode& node) {
   if (tree.nodes().empty()) return 0;
   constexpr double kMargin = 1e-6;  // lattice units; far above the round-off of a box

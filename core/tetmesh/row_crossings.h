@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include "core/tetmesh/lattice_nodes.h"
@@ -20,8 +21,10 @@ class RowCrossings {
   /// other.
   int winding(const LatticeNode& node) const;
 
-  /// Whether some row passes through a place that the surface goes round more than once.
-  bool overlaps() const;
+  /// Calls visit(y, z, first x, last x), lattice units, where rows pass through what the surface goes round more than
+  /// once.
+  template <typename Visit>
+  void visit_overlaps(const Visit& visit) const;
 
   /// Calls visit(node) for all nodes with a winding number other than 0, row by row.
   template <typename Visit>
@@ -54,6 +57,18 @@ void RowCrossings::visit_inside(const Visit& visit) const {
       auto x = static_cast<std::int32_t>(std::ceil(from.x));
       x += (x ^ from.y) & 1;
       for (; x < to.x; x += 2) visit(LatticeNode{x, from.y, from.z});
+    }
+  }
+}
+
+template <typename Visit>
+void RowCrossings::visit_overlaps(const Visit& visit) const {
+  for (std::size_t r = 0; r + 1 < row_begins_.size(); ++r) {
+    int winding = 0;
+    for (Index c = row_begins_[r]; c + 1 < row_begins_[r + 1]; ++c) {
+      const Crossing &from = crossings_[static_cast<std::size_t>(c)], &to = crossings_[static_cast<std::size_t>(c) + 1];
+      winding -= from.sign;
+      if (std::abs(winding) > 1) visit(from.y, from.z, from.x, to.x);
     }
   }
 }

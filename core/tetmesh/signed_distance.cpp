@@ -6,6 +6,7 @@
 
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/narrow_band.h"
+#include "core/tetmesh/overlaps.h"
 #include "core/tetmesh/row_crossings.h"
 #include "core/tetmesh/winding_number.h"
 
@@ -17,8 +18,8 @@ constexpr double kHoleSlope = 8.0 * kBandVoxels;
 
 constexpr std::int64_t kGrain = 256;
 
-/// So many rows in each direction are looked at for overlaps.
-constexpr double kMostRows = 1024;
+/// So many rows along the box's diagonal are looked at for overlaps.
+constexpr double kRows = 800;
 
 /// A lattice node with its distance, which is signed once it is known; nearest is -1 beyond the band.
 using KnownNode = BandNode;
@@ -92,25 +93,25 @@ SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::
   return result;
 }
 
-DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                                 const LatticeFrame& frame)
-    : frame_(frame), tree_(positions, triangles) {
+DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles)
+    : tree_(positions, triangles) {
   if (!has_integer_windings(positions, triangles)) {
     winding_.emplace(positions, triangles);
     return;
   }
-  LatticeFrame rows = frame;  // not all of the finest: there may be more of them than memory
   Bounds box;
-  for (const Vec3& p : positions) box.add(p);
-  while (rows.spacing * kMostRows < box.diagonal()) rows.spacing *= 2;
-  overlaps_ = RowCrossings(positions, triangles, rows).overlaps();
+  for (const Triangle& triangle : triangles)
+    for (const Index v : triangle) box.add(positions[static_cast<std::size_t>(v)]);
+  if (triangles.empty() || !(box.diagonal() > 0)) return;
+  near_overlaps_ = find_near_overlaps(positions, triangles, {box.center(), box.diagonal() / kRows});
 }
 
-SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, const std::vector<double>& reaches,
-                                        const SurfaceDistance& known, const Threads& threads) const {
+SurfaceDistance DistanceSampler::sample(const LatticeFrame& frame, const LatticeNodeSet& nodes,
+                                        const std::vector<double>& reaches, const SurfaceDistance& known,
+                                        const Threads& threads) const {
   const std::vector<LatticeNode>& list = nodes.nodes();
   SurfaceDistance result;
-  result.lattice.frame = frame_;
+  result.lattice.frame = frame;
   result.lattice.nodes = nodes;
   result.lattice.values.resize(list.size());
   result.nearest_triangles.resize(list.size());
@@ -121,16 +122,16 @@ SurfaceDistance DistanceSampler::sample(const LatticeNodeSet& nodes, const std::
         result.nearest_triangles[i] = known.nearest_triangles[static_cast<std::size_t>(number)];
         continue;
       }
-      const Vec3 p = lattice_position(frame_, list[i]);
+      const Vec3 p = lattice_position(frame, list[i]);
       const TriangleTree::Nearest found =
           tree_.nearest(p, reaches[i] * reaches[i], [](Index, const Vec3&) { return true; });
       double distance = std::sqrt(found.squared_distance);
       bool inside = false;
       if (!winding_) {
-        inside = winding_of_node(tree_, frame_, list[i]) != 0;
+        inside = winding_of_node(tree_, frame, list[i]) != 0;
       } else {
         const double beyond = std::abs((*winding_)(p)) - 0.5;
-        distance = std::min(distance, 0.5 * frame_.spacing * kHoleSlope * std::abs(beyond));
+        distance = std::min(distance, 0.5 * frame.spacing * kHoleSlope * std::abs(beyond));
         inside = beyond > 0;
       }
       result.lattice.values[i] = inside ? -distance : distance;

@@ -32,23 +32,21 @@ SurfaceDistance measure_distance(const std::vector<Vec3>& positions, const std::
 /// The same for nodes of any choice: those of an octree, whose sizes differ.
 class DistanceSampler {
  public:
-  /// frame: the finest lattice, which all nodes belong to.
-  DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                  const LatticeFrame& frame);
+  DistanceSampler(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
-  /// Distances of all `nodes` (numbered), m; at most `reaches`, one a node. What `known`, an earlier result, has is
-  /// taken from there.
-  SurfaceDistance sample(const LatticeNodeSet& nodes, const std::vector<double>& reaches, const SurfaceDistance& known,
-                         const Threads& threads) const;
+  /// Distances of all `nodes` (numbered, of the lattice at `frame`), m; at most `reaches`, one a node. What `known`, an
+  /// earlier result, has is taken from there.
+  SurfaceDistance sample(const LatticeFrame& frame, const LatticeNodeSet& nodes, const std::vector<double>& reaches,
+                         const SurfaceDistance& known, const Threads& threads) const;
 
   const TriangleTree& tree() const { return tree_; }
-  /// Whether the surface is closed and goes more than once round some place, on rows of the lattice or on some of them.
-  bool overlaps() const { return overlaps_; }
+  /// Triangles near a place that the surface, if it is closed, goes more than once round on some of the lattice's rows:
+  /// 1 where overlapping pieces may hide one. Empty: no row has such a place.
+  const std::vector<std::uint8_t>& near_overlaps() const { return near_overlaps_; }
 
  private:
-  LatticeFrame frame_;
   TriangleTree tree_;
-  bool overlaps_ = false;
+  std::vector<std::uint8_t> near_overlaps_;
   std::optional<WindingNumber> winding_;  ///< of an open surface
 };
 
