@@ -129,8 +129,8 @@ void add_dial(Table<Shot>& t) {
         "Wanted error of the motion: distance of the surface's vertices from where ever finer meshes and steps would "
         "take them, root mean square over the vertices in the worst frame, over the diagonal of the body's box. The "
         "tets, substeps and tolerance that are not given are chosen for it, by short runs on coarse meshes, and the "
-        "integrator is \"bdf2\" where none is given; each run says the error it believes in. (The error of a body is "
-        "another: how far its tetrahedra may be from its surface at rest.)",
+        "integrator is \"bdf2\" where none is given; each run says the error it believes in. The error of a body is "
+        "another: how far its tetrahedra may be from its surface at rest.",
         "none: nothing is chosen")
       .add("max_tets", of_dial(&DialSettings::max_tets), whole<std::int64_t>(1000, 500000000), "",
            "error: the most tetrahedra of a body. If they do not do, the run stops and says so.");
