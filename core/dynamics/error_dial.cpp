@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "core/base/check.h"
 
@@ -12,28 +15,34 @@ namespace {
 /// a given sum where the first is four times the second. Tolerance is cheap.
 constexpr double kMeshShare = 0.75, kTimeShare = 0.2, kAlgebraShare = 0.05;
 
-/// Coarsest mesh: below, the surface is hardly carried.
-constexpr std::int64_t kFirstTets = 500;
-constexpr std::int64_t kFewestTets = 250;
-/// From one pilot mesh to the next, in tetrahedra.
-constexpr std::int64_t kMeshRatio = 4;
-/// Linear tetrahedra: 2 where the solution is smooth, 1 at the edges of pins, whose place moves with the mesh.
-constexpr double kLowestMeshOrder = 1, kHighestMeshOrder = 2;
+/// The coarsest mesh, and the choice: below, the surface is hardly carried and errors follow no power.
+constexpr std::int64_t kFirstTets = 1500;
+constexpr std::int64_t kMeshRatio = 2;
+/// The mesh that time and tolerance are judged on.
+constexpr std::int64_t kMiddleTets = kFirstTets * kMeshRatio;
+/// The run may have so many times the tetrahedra of the last rung.
+constexpr double kReach = 8;
+/// Steps of a frame on the rungs: two meshes differ by nearly the same in long steps as in short ones.
+constexpr int kRungSteps = 2;
 
 /// A jump of constraints leaves first order, a slowly damped oscillation of long steps less.
 constexpr double kLowestStepOrder = 0.7, kHighestStepOrder = 2.2;
 
-constexpr double kNoError = -1;  ///< no two runs to compare
+constexpr double kPilotTolerance = 1e-5;
+constexpr double kExactTolerance = 1e-7;  ///< that others are compared to
+constexpr double kTightestTolerance = 1e-6;
 
-constexpr double kPilotTolerance = 1e-6;
-/// Which the algebraic error is measured with; it is proportional to the tolerance.
-constexpr double kLooseTolerance = 1e-3;
-constexpr double kTightestTolerance = 1e-8, kLoosestTolerance = 1e-2;
+double order_of_steps(const std::vector<double>& differences) {
+  const std::size_t n = differences.size();
+  if (n < 2) return 1;
+  if (differences[n - 1] <= 0 || differences[n - 2] <= 0) return kHighestStepOrder;
+  return std::clamp(std::log2(differences[n - 2] / differences[n - 1]), kLowestStepOrder, kHighestStepOrder);
+}
 
-/// The order that three errors' differences show where each run divides the step by `ratio`.
-double fitted_order(double first, double second, double ratio, double lowest, double highest) {
-  if (second <= 0 || first <= 0) return highest;
-  return std::clamp(std::log(first / second) / std::log(ratio), lowest, highest);
+/// Two digits, upwards.
+std::int64_t rounded_up(double tets) {
+  const double unit = std::pow(10, std::floor(std::log10(tets)) - 1);
+  return static_cast<std::int64_t>(unit * std::ceil(tets / unit * (1 - 1e-12)));
 }
 
 /// The search; one object for one body.
@@ -42,175 +51,147 @@ class Dial {
   Dial(const DialRequest& request, const PilotRun& run) : request_(request), run_(run) {}
 
   std::optional<DialChoice> turn() {
-    choice_.chosen.tolerance = kPilotTolerance;
     choice_.chosen.substeps = std::max(1, request_.given_substeps);
-    if (!find_first_mesh()) return std::nullopt;
-    if (request_.dynamic) choose_step();
+    if (request_.dynamic && !choose_steps()) return std::nullopt;
     if (!choose_mesh()) return std::nullopt;
-    choose_tolerance();
-    choice_.reached = is_reached();
+    if (!choose_tolerance()) return std::nullopt;
+    constexpr double kRounding = 1.01;
+    choice_.reached = choice_.believed.total() <= kRounding * request_.error;
+    choice_.pilot_share = work_ / (static_cast<double>(choice_.chosen.tets) * choice_.chosen.substeps);
     return choice_;
   }
 
  private:
-  std::optional<Motion> pilot(std::int64_t tets, int substeps, double tolerance) {
+  std::optional<Motion> pilot(std::int64_t tets, int substeps, double tolerance = kPilotTolerance) {
     std::optional<Motion> motion = run_({tets, substeps, tolerance});
-    choice_.pilots += motion ? 1 : 0;
+    work_ += static_cast<double>(tets) * substeps;
+    if (motion) {
+      ++choice_.pilots;
+      choice_.finest_pilot = std::max(choice_.finest_pilot, tets);
+    }
     return motion;
   }
 
   double distance(const Motion& a, const Motion& b) const { return motion_distance(a, b) / request_.size; }
 
-  /// The largest pilot: a quarter of a given mesh, so that pilots stay cheaper than the run.
-  std::int64_t most_pilot_tets() const {
-    return request_.given_tets > 0 ? std::max(kFewestTets * kMeshRatio * kMeshRatio, request_.given_tets / kMeshRatio)
-                                   : request_.most_tets;
+  /// The first mesh from the middle one on that can be run at all; a copy of its motion in one step a frame, or as many
+  /// as are given, starts the pairs.
+  std::optional<Motion> find_middle(int substeps) {
+    for (middle_ = std::min(kMiddleTets, request_.most_tets); middle_ <= request_.most_tets; middle_ *= kMeshRatio)
+      if (auto motion = pilot(middle_, substeps)) return motion;
+    return std::nullopt;
   }
 
-  bool find_first_mesh() {
-    first_tets_ = request_.given_tets > 0 ? std::clamp(request_.given_tets / (kMeshRatio * kMeshRatio * kMeshRatio),
-                                                       kFewestTets, kFirstTets)
-                                          : std::min(kFirstTets, request_.most_tets);
-    for (; first_tets_ <= most_pilot_tets(); first_tets_ *= kMeshRatio) {
-      coarse_ = pilot(first_tets_, choice_.chosen.substeps, kPilotTolerance);
-      if (coarse_) return true;
-    }
-    return false;
-  }
-
-  /// Steps halved on the coarsest mesh until the rest of the error is small, or twice where they are given.
-  void choose_step() {
-    const int first = choice_.chosen.substeps;
+  /// Steps doubled on the middle mesh until the rest of the error is small; where they are given, twice.
+  bool choose_steps() {
     const bool is_given = request_.given_substeps > 0;
+    const int first = choice_.chosen.substeps;
     const double wanted = kTimeShare * request_.error;
-    std::optional<Motion> longer = coarse_;
+    std::optional<Motion> longer = find_middle(first);
+    if (!longer) return false;
     std::vector<double> differences;
     double error = 0;  // left with `steps`
-    int steps = 2 * first;
-    for (;; steps *= 2) {
-      std::optional<Motion> shorter = pilot(first_tets_, steps, kPilotTolerance);
-      if (shorter && longer)
-        differences.push_back(distance(*longer, *shorter));
-      else
-        differences.clear();
+    int steps = first;
+    const int most = is_given ? 4 * first : request_.most_substeps;
+    while (2 * steps <= most) {
+      std::optional<Motion> shorter = pilot(middle_, 2 * steps);
+      if (!shorter) break;
+      steps *= 2;
+      differences.push_back(distance(*longer, *shorter));
       longer = std::move(shorter);
-      if (!differences.empty()) {
-        choice_.step_order = order_of_steps(differences);
-        error = differences.back() / (std::pow(2, choice_.step_order) - 1);
-      }
-      const bool is_fitted = differences.size() > 1;
-      if (is_fitted && (is_given || error <= wanted)) break;
-      if (2 * steps > (is_given ? 8 * first : request_.most_substeps)) break;
-    }
-    if (!is_given) choice_.chosen.substeps = needed_steps(steps, differences.empty() ? kNoError : error, wanted);
-    choice_.believed.time = error * std::pow(static_cast<double>(steps) / choice_.chosen.substeps, choice_.step_order);
-  }
-
-  /// So many that `error`, which is left with `steps`, becomes `wanted`; not known: as many as there may be.
-  int needed_steps(int steps, double error, double wanted) const {
-    if (error == kNoError) return request_.most_substeps;
-    const double needed = std::ceil(steps * std::pow(error / wanted, 1 / choice_.step_order));
-    return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(request_.most_substeps)));
-  }
-
-  static double order_of_steps(const std::vector<double>& differences) {
-    const std::size_t n = differences.size();
-    if (n < 2) return 1;
-    return fitted_order(differences[n - 2], differences[n - 1], 2, kLowestStepOrder, kHighestStepOrder);
-  }
-
-  /// Errors on meshes of four times as many tetrahedra each, with the step that was chosen. False: no two could be run.
-  bool choose_mesh() {
-    const double edge_ratio = std::cbrt(static_cast<double>(kMeshRatio));
-    const double wanted = kMeshShare * request_.error;
-    std::optional<Motion> coarser = pilot(first_tets_, choice_.chosen.substeps, kPilotTolerance);
-    std::vector<double> differences;
-    double error = 0, needed = 0;  // left with `tets`, and what makes it `wanted`
-    std::int64_t tets = kMeshRatio * first_tets_;
-    for (;; tets *= kMeshRatio) {
-      std::optional<Motion> finer = pilot(tets, choice_.chosen.substeps, kPilotTolerance);
-      if (finer && coarser)
-        differences.push_back(distance(*coarser, *finer));
-      else
-        differences.clear();
-      coarser = std::move(finer);
-      if (!differences.empty()) {
-        choice_.mesh_order = order_of_meshes(differences, edge_ratio);
-        error = differences.back() / (std::pow(edge_ratio, choice_.mesh_order) - 1);
-        needed = static_cast<double>(tets) * std::pow(error / wanted, 3 / choice_.mesh_order);
-      }
-      const bool is_fitted = differences.size() > 1;
-      const bool is_enough = needed <= static_cast<double>(kMeshRatio * tets);
-      if (request_.given_tets == 0 && is_fitted && is_enough) break;
-      if (kMeshRatio * tets > most_pilot_tets()) break;
+      choice_.step_order = order_of_steps(differences);
+      error = differences.back() / (std::pow(2, choice_.step_order) - 1);
+      if (!is_given && differences.size() > 1 && error <= wanted) break;
     }
     if (differences.empty()) return false;
-    choice_.chosen.tets = request_.given_tets > 0 ? request_.given_tets : rounded(needed);
-    choice_.believed.mesh =
-        error * std::pow(static_cast<double>(tets) / static_cast<double>(choice_.chosen.tets), choice_.mesh_order / 3);
+    if (!is_given) choice_.chosen.substeps = needed_steps(steps, error, wanted, differences.size() > 2);
+    choice_.believed.time = error * std::pow(static_cast<double>(steps) / choice_.chosen.substeps, choice_.step_order);
     return true;
   }
 
-  /// Of two meshes alone none can be told: between the two that linear tetrahedra have.
-  static double order_of_meshes(const std::vector<double>& differences, double edge_ratio) {
-    const std::size_t n = differences.size();
-    if (n < 2) return 0.5 * (kLowestMeshOrder + kHighestMeshOrder);
-    return fitted_order(differences[n - 2], differences[n - 1], edge_ratio, kLowestMeshOrder, kHighestMeshOrder);
+  /// So many that `error`, which is left with `steps`, becomes `wanted`; more than half of `steps` where half of them
+  /// were judged before and did not do.
+  int needed_steps(int steps, double error, double wanted, bool is_half_judged) const {
+    const double needed = std::ceil(steps * std::pow(error / wanted, 1 / choice_.step_order));
+    const double fewest = is_half_judged ? 0.5 * steps + 1 : 1;
+    return static_cast<int>(std::min(std::max(needed, fewest), static_cast<double>(request_.most_substeps)));
   }
 
-  /// Two digits, upwards, within the limits.
-  std::int64_t rounded(double tets) const {
-    const double most = static_cast<double>(request_.most_tets);
-    const double fewest = std::min(static_cast<double>(first_tets_), most);
-    if (!(tets < most)) return request_.most_tets;
-    const double unit = std::pow(10, std::floor(std::log10(std::max(tets, fewest))) - 1);
-    return static_cast<std::int64_t>(std::min(most, unit * std::ceil(std::max(tets, fewest) / unit)));
-  }
-
-  /// A residual of equal size hides errors of longer waves on a finer mesh: they grow as h^-2.
-  void choose_tolerance() {
-    const std::optional<Motion> tight = pilot(first_tets_, choice_.chosen.substeps, kPilotTolerance);
-    const std::optional<Motion> loose = pilot(first_tets_, choice_.chosen.substeps, kLooseTolerance);
-    const double growth =
-        std::max(1.0, std::pow(static_cast<double>(choice_.chosen.tets) / static_cast<double>(first_tets_), 2.0 / 3));
-    const double slope = tight && loose ? growth * distance(*tight, *loose) / kLooseTolerance : 0;
-    const double wanted = kAlgebraShare * request_.error;
-    double tolerance = request_.given_tolerance;
-    if (tolerance == 0) {
-      tolerance = tight && loose ? kLoosestTolerance : kPilotTolerance;
-      if (slope * tolerance > wanted) tolerance = std::max(kTightestTolerance, wanted / slope);
+  /// The ladder, rung by rung. False: too few rungs could be run.
+  bool choose_mesh() {
+    const double most = static_cast<double>(request_.most_tets), given = static_cast<double>(request_.given_tets);
+    const double wanted = kMeshShare * request_.error * request_.size;
+    double least = 0;  // all that the rung before could have decided
+    for (std::int64_t tets = kFirstTets; tets <= request_.most_tets; tets *= kMeshRatio) {
+      std::optional<Motion> motion = pilot(tets, rung_steps());
+      if (!motion) continue;
+      meshes_.add(static_cast<double>(tets), std::move(*motion));
+      if (meshes_.count() < MeshErrors::kFewest) continue;
+      meshes_.fit();
+      const double reach = kReach * static_cast<double>(tets);
+      if ((given > 0 ? given : needed_tets(wanted)) <= reach || reach >= most) break;
+      least = reach;
     }
-    choice_.chosen.tolerance = tolerance;
-    choice_.believed.algebra = slope * tolerance;
+    if (meshes_.count() < MeshErrors::kFewest) return false;
+    choice_.mesh_order = meshes_.order();
+    take_mesh(std::max(least, needed_tets(wanted)));
+    return true;
   }
 
-  bool is_reached() const {
-    constexpr double kRounding = 1.01;
-    return choice_.believed.total() <= kRounding * request_.error;
+  /// The same for every wanted error, so that all see the same curve.
+  int rung_steps() const {
+    if (!request_.dynamic) return 1;
+    return request_.given_substeps > 0 ? std::min(kRungSteps, request_.given_substeps) : kRungSteps;
+  }
+
+  /// The coarsest rung whose error is small enough, or what the curve says beyond the last one.
+  double needed_tets(double wanted) const {
+    for (std::size_t i = 0; i < meshes_.count(); ++i)
+      if (meshes_.measured(i) <= wanted) return meshes_.tets(i);
+    return std::max(meshes_.tets(meshes_.count() - 1), meshes_.tets_for(wanted));
+  }
+
+  void take_mesh(double needed) {
+    choice_.chosen.tets = request_.given_tets > 0 ? request_.given_tets
+                          : needed < static_cast<double>(request_.most_tets)
+                              ? std::min(rounded_up(needed), request_.most_tets)
+                              : request_.most_tets;
+    const double tets = static_cast<double>(choice_.chosen.tets);
+    double error = meshes_.expected(tets);
+    for (std::size_t i = 0; i < meshes_.count(); ++i)
+      if (meshes_.tets(i) == tets) error = meshes_.measured(i);
+    choice_.believed.mesh = error / request_.size;
+  }
+
+  /// Tightened until it does on the middle mesh. A residual of equal size hides errors of longer waves on a finer mesh:
+  /// they grow as h^-2. False: could not be judged.
+  bool choose_tolerance() {
+    const int substeps = choice_.chosen.substeps;
+    if (middle_ == 0) middle_ = static_cast<std::int64_t>(meshes_.tets(1));
+    const double growth =
+        std::max(1.0, std::pow(static_cast<double>(choice_.chosen.tets) / static_cast<double>(middle_), 2.0 / 3));
+    const bool is_given = request_.given_tolerance > 0;
+    const std::optional<Motion> exact = pilot(middle_, substeps, kExactTolerance);
+    if (!exact) return false;
+    choice_.chosen.tolerance = is_given ? request_.given_tolerance : request_.loosest_tolerance;
+    for (;; choice_.chosen.tolerance /= 10) {
+      const std::optional<Motion> loose = pilot(middle_, substeps, choice_.chosen.tolerance);
+      if (loose) choice_.believed.algebra = growth * distance(*loose, *exact);
+      const bool is_last = is_given || choice_.chosen.tolerance < 1.01 * kTightestTolerance;
+      if (is_last) return loose.has_value();
+      if (loose && choice_.believed.algebra <= kAlgebraShare * request_.error) return true;
+    }
   }
 
   const DialRequest& request_;
   const PilotRun& run_;
   DialChoice choice_;
-  std::int64_t first_tets_ = kFirstTets;
-  std::optional<Motion> coarse_;  ///< on the first mesh
+  MeshErrors meshes_;
+  std::int64_t middle_ = 0;  ///< tetrahedra; 0: not found yet
+  double work_ = 0;          ///< of all pilots, tetrahedra times steps of a frame
 };
 
 }  // namespace
-
-double motion_distance(const Motion& a, const Motion& b) {
-  CHECK(a.size() == b.size());
-  CHECK(!a.empty());
-  double largest = 0;
-  for (std::size_t f = 0; f < a.size(); ++f) {
-    CHECK(a[f].size() == b[f].size());
-    CHECK(!a[f].empty());
-    double sum = 0;
-    for (std::size_t i = 0; i < a[f].size(); ++i) sum += (a[f][i] - b[f][i]).squaredNorm();
-    largest = std::max(largest, sum / static_cast<double>(a[f].size()));
-  }
-  return std::sqrt(largest);
-}
 
 std::optional<DialChoice> turn_dial(const DialRequest& request, const PilotRun& run) {
   CHECK(request.error > 0);

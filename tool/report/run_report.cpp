@@ -182,6 +182,8 @@ nlohmann::ordered_json to_json(const BodyDial& dial) {
           {"mesh_order", choice.mesh_order},
           {"step_order", choice.step_order},
           {"pilots", choice.pilots},
+          {"finest_pilot", choice.finest_pilot},
+          {"pilot_share", choice.pilot_share},
           {"pilot_seconds", dial.seconds},
           {"from_cache", dial.from_cache}};
 }

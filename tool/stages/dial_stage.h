@@ -21,6 +21,10 @@ struct BodyDial {
   bool from_cache = false;
 };
 
+/// What is asked for a body; what the shot gives itself is not for the dial to choose. A body of a given size but for a
+/// number is filled to know it.
+DialRequest dial_request(Shot shot, const BodySettings& body, const LoadedBody& loaded, const RunContext& context);
+
 /// Everything the choice depends on. Where dial is off: empty.
 StageKey dial_key(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
                   const BodyConstraints& constraints);

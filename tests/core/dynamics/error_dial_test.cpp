@@ -2,6 +2,7 @@
 #include "core/dynamics/error_dial.h"
 
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,7 @@ namespace softreel {
 namespace {
 
 struct KnownErrors {
-  double mesh = 0.5, mesh_order = 1.5, time = 0.4, step_order = 2, algebra = 0.1;
+  double mesh = 0.3, mesh_order = 1.5, time = 0.4, step_order = 2, algebra = 0.1;
 
   double mesh_error(std::int64_t tets) const {
     return mesh * std::pow(static_cast<double>(tets) / 500, -mesh_order / 3);
@@ -29,6 +30,7 @@ TEST(ErrorDial, BelievesWhatIsTrueWhereErrorsFollowPowers) {
     known.mesh_order = order;
     const auto choice = turn_dial({.error = 0.05, .most_tets = 100000000}, known.pilots());
     ASSERT_TRUE(choice);
+    EXPECT_NEAR(choice->mesh_order, order, 0.05);
     EXPECT_NEAR(choice->believed.mesh / known.mesh_error(choice->chosen.tets), 1, 0.05) << order;
     EXPECT_NEAR(choice->believed.time / known.time_error(choice->chosen.substeps), 1, 0.05) << order;
     EXPECT_TRUE(choice->reached);
@@ -36,17 +38,56 @@ TEST(ErrorDial, BelievesWhatIsTrueWhereErrorsFollowPowers) {
   }
 }
 
-TEST(ErrorDial, ASmallerErrorTakesMoreTetrahedraShorterStepsAndATighterSolver) {
-  DialChoice before;
-  for (const double error : {0.1, 0.05, 0.02}) {
-    const auto choice = turn_dial({.error = error, .most_tets = 100000000}, KnownErrors{}.pilots());
-    ASSERT_TRUE(choice);
-    if (before.pilots > 0) {
-      EXPECT_GT(choice->chosen.tets, before.chosen.tets);
-      EXPECT_GT(choice->chosen.substeps, before.chosen.substeps);
-      EXPECT_LT(choice->chosen.tolerance, before.chosen.tolerance);
+/// Errors of the first order that scatter by half, as pins that hold whole tetrahedra make them.
+PilotRun scattered(unsigned seed) {
+  return [seed](const Discretization& cut) -> std::optional<Motion> {
+    std::mt19937 random(seed + static_cast<unsigned>(cut.tets));
+    const double scatter = std::uniform_real_distribution<>(0.5, 1.5)(random);
+    return Motion{
+        {Vec3(KnownErrors{.mesh_order = 1}.mesh_error(cut.tets) * scatter, KnownErrors{}.time_error(cut.substeps), 0)}};
+  };
+}
+
+TEST(ErrorDial, ASmallerErrorNeverTakesFewerTetrahedraOrLongerSteps) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    DialChoice before;
+    for (double error = 0.3; error > 0.005; error /= 1.3) {
+      const auto choice = turn_dial({.error = error}, scattered(seed));
+      ASSERT_TRUE(choice);
+      EXPECT_GE(choice->chosen.tets, before.chosen.tets) << seed << " " << error;
+      EXPECT_GE(choice->chosen.substeps, before.chosen.substeps) << seed << " " << error;
+      before = *choice;
     }
-    before = *choice;
+    EXPECT_GT(before.chosen.tets, 100000);
+    EXPECT_GT(before.chosen.substeps, 10);
+  }
+}
+
+TEST(ErrorDial, BelievesNearlyWhatIsTrueWhereErrorsScatter) {
+  int within = 0;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const auto choice = turn_dial({.error = 0.05}, scattered(seed));
+    ASSERT_TRUE(choice);
+    const double truth = KnownErrors{.mesh_order = 1}.mesh_error(choice->chosen.tets);
+    within += choice->believed.mesh > truth / 2 && choice->believed.mesh < truth * 2 ? 1 : 0;
+  }
+  EXPECT_GE(within, 40);
+}
+
+TEST(ErrorDial, PilotsOfAFineRunCostAPartOfIt) {
+  for (const double error : {0.02, 0.01, 0.005}) {
+    double work = 0;
+    const PilotRun known = KnownErrors{.mesh_order = 1.3}.pilots();
+    const auto choice =
+        turn_dial({.error = error, .dynamic = false, .most_tets = 100000000}, [&](const Discretization& cut) {
+          work += static_cast<double>(cut.tets) * cut.substeps;
+          return known(cut);
+        });
+    ASSERT_TRUE(choice);
+    const double run = static_cast<double>(choice->chosen.tets) * choice->chosen.substeps;
+    EXPECT_NEAR(choice->pilot_share, work / run, 1e-12);
+    EXPECT_GT(run, 100000);
+    EXPECT_LT(choice->pilot_share, 0.75);
   }
 }
 
