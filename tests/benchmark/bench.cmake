@@ -2,6 +2,7 @@
 # sources to bench_parts, which bench_tests link too.
 add_library(bench_parts STATIC
   bench.cpp
+  dial/dial.cpp dial/dial_study.cpp dial/plane_bar.cpp
   limits/bending_bar.cpp limits/cost_curve.cpp limits/limits.cpp limits/strain_cells.cpp limits/tet_remedies.cpp
   report/machine.cpp report/plot.cpp report/report.cpp report/table.cpp
   precision/bar_models.cpp precision/bar_motions.cpp precision/bar_statics.cpp precision/beam_theory.cpp

@@ -2,6 +2,7 @@
 
 #include <ctime>
 
+#include "tests/benchmark/dial/dial.h"
 #include "tests/benchmark/limits/limits.h"
 #include "tests/benchmark/precision/precision.h"
 #include "tests/benchmark/scale/scale.h"
@@ -21,6 +22,7 @@ double seconds_of(clockid_t clock) {
 std::span<const Benchmark> benchmarks() {
   static const std::vector<Benchmark> all{
       {"precision", "Error against processor time, beside rivals and theory", run_precision},
+      {"dial", "The error that solver.error believes in, beside the truth", run_dial},
       {"stability", "Bodies scrambled, stretched, twisted and abused, by every rotation method", run_stability},
       {"scale", "Time and memory from a thousand to ten million tetrahedra, on one thread and two", run_scale},
       {"limits", "What bounds the accuracy: locking of linear tetrahedra, and its remedies", run_limits},

@@ -12,7 +12,7 @@ int run_check(const ShotOptions& options) {
   ShotOptions silent = options;  // the facts are printed below, in order
   silent.quiet = true;
   Session session(silent);
-  ShotRun run(session.shot(), session.context());
+  ShotRun run(session.shot(), session.context(), DialUse::LookUp);
   SceneStage scenes(run);
   scenes.load_environment();
   RunReport report = session.report("check", run);

@@ -64,12 +64,13 @@ Plan make_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan
   std::vector<int> needed;
   for (int frame = frames.first; frame <= frames.last; ++frame)
     if (!pictures.is_kept(frame) && !pictures.is_stored(frame)) needed.push_back(frame);
-  const double steps = shot.settings.mode == SimulationMode::Static ? kStaticStepsPerFrame : shot.solver.substeps;
   Plan plan;
   plan.traced = static_cast<int>(needed.size());
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const LoadedBody& loaded = run.loaded(b);
-    const double tets = expected_tets(shot.bodies[b], loaded);
+    const double tets = expected_tets(run.settings(b), loaded);
+    const double steps =
+        shot.settings.mode == SimulationMode::Static ? kStaticStepsPerFrame : run.resolved(b).solver.substeps;
     const int simulated = frames_to_simulate(run, b, needed);
     plan.tets += tets;
     plan.triangles += static_cast<double>(loaded.surface.triangles.size());
@@ -92,16 +93,20 @@ int run_plan(const ShotOptions& options) {
   const Session session(silent);
   const Shot& shot = session.shot();
   const FrameSpan frames = session.frames();
-  const ShotRun run(shot, session.context());
+  const ShotRun run(shot, session.context(), DialUse::LookUp);
   const SceneStage scenes(run);
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
   const PictureStage pictures(scenes, shot, outputs, session.context());
   const Plan plan = make_plan(run, pictures, frames, session.context().threads.count());
   std::printf("%s: would do (nothing is written):\n", shot.settings.name.c_str());
   for (std::size_t b = 0; b < run.body_count(); ++b) {
+    if (shot.dial.is_on())
+      std::printf("  %s: %s\n", shot.bodies[b].name.c_str(),
+                  run.dial(b) ? describe(*run.dial(b), shot).c_str()
+                              : "turn the error dial by short coarse runs; what follows is of default sizes");
     const bool cached = session.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key());
     std::printf("  fill %s: %zu triangles, about %.0f tetrahedra%s\n", shot.bodies[b].name.c_str(),
-                run.loaded(b).surface.triangles.size(), expected_tets(shot.bodies[b], run.loaded(b)),
+                run.loaded(b).surface.triangles.size(), expected_tets(run.settings(b), run.loaded(b)),
                 cached ? " (in the cache already)" : "");
   }
   std::printf(
@@ -109,7 +114,8 @@ int run_plan(const ShotOptions& options) {
       run.body_count() * static_cast<std::size_t>(frames.last - first_simulated_frame(shot) + 1),
       shot.settings.mode == SimulationMode::Static
           ? "static"
-          : fmt::format("{} sub-steps{}", shot.solver.substeps, shot.solver.step_error > 0 ? " or more" : "").c_str());
+          : fmt::format("{} sub-steps{}", run.resolved(0).solver.substeps, shot.solver.step_error > 0 ? " or more" : "")
+                .c_str());
   std::printf("  trace %d of %d frames of %d x %d at %d samples to %s\n", plan.traced, frames.count(),
               shot.render.params.width, shot.render.params.height, shot.render.params.samples,
               shot.output.directory.c_str());

@@ -22,6 +22,8 @@ std::vector<BodyReport> report_bodies(const ShotRun& run) {
     report.vertices = static_cast<std::int64_t>(loaded.surface.positions.size());
     report.triangles = static_cast<std::int64_t>(loaded.surface.triangles.size());
     report.facts = loaded.facts;
+    report.dial = run.dial(b);
+    if (report.dial) report.dial_line = describe(*report.dial, run.shot());
     report.levels = run.simulation(b).levels();
     if (const FilledBody* filled = run.filled(b)) {
       report.nodes = static_cast<std::int64_t>(filled->mesh.nodes.size());
@@ -126,6 +128,8 @@ std::vector<std::string> skipped_lines(const RunReport& report) {
     filled += body.tets_from_cache ? 1 : 0;
     fill_seconds += body.tets_from_cache ? body.tets_seconds : 0;
   }
+  for (const BodyReport& body : report.bodies)
+    if (body.dial && body.dial->from_cache) add(1, "error dial", body.dial->seconds);
   add(filled, filled == 1 ? "tetrahedralisation" : "tetrahedralisations", fill_seconds);
   add(report.simulation.loaded + report.simulation.not_needed, "simulated body frames",
       report.simulation.saved_seconds);
@@ -144,6 +148,9 @@ std::string to_text(const RunReport& report) {
       text += fmt::format(", {} tetrahedra, {} nodes{}", body.tets, body.nodes,
                           body.tets_from_cache ? " (from the cache)" : "");
     text += "\n";
+    if (body.dial)
+      text += fmt::format("  {}: {} ({})\n", body.name, body.dial_line,
+                          (body.dial->from_cache ? "from the cache, once " : "") + format_duration(body.dial->seconds));
   }
   text += simulation_line(report);
   text += recovery_lines(report.simulation);
@@ -158,6 +165,30 @@ std::string to_text(const RunReport& report) {
   for (const std::string& made : report.made) text += "  made: " + made + "\n";
   return text;
 }
+
+namespace {
+
+nlohmann::ordered_json to_json(const BodyDial& dial) {
+  const DialChoice& choice = dial.choice;
+  return {{"asked", dial.asked},
+          {"believed", choice.believed.total()},
+          {"mesh", choice.believed.mesh},
+          {"time", choice.believed.time},
+          {"solver", choice.believed.algebra},
+          {"reached", choice.reached},
+          {"tets", choice.chosen.tets},
+          {"substeps", choice.chosen.substeps},
+          {"tolerance", choice.chosen.tolerance},
+          {"mesh_order", choice.mesh_order},
+          {"step_order", choice.step_order},
+          {"pilots", choice.pilots},
+          {"finest_pilot", choice.finest_pilot},
+          {"pilot_share", choice.pilot_share},
+          {"pilot_seconds", dial.seconds},
+          {"from_cache", dial.from_cache}};
+}
+
+}  // namespace
 
 std::string to_json(const RunReport& report) {
   nlohmann::ordered_json json;
@@ -181,6 +212,7 @@ std::string to_json(const RunReport& report) {
                               {"tets_seconds", body.tets_seconds},
                               {"facts", body.facts},
                               {"levels", levels}});
+    if (body.dial) json["bodies"].back()["error"] = to_json(*body.dial);
   }
   const SimulationCounts& simulation = report.simulation;
   json["simulation"] = {{"computed", simulation.computed},

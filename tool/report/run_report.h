@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct BodyReport {
   bool tets_from_cache = false;
   double tets_seconds = 0;  ///< what filling took, now or when it was stored
   std::vector<std::string> facts;
+  std::optional<BodyDial> dial;  ///< what the error dial chose
+  std::string dial_line;         ///< the same in words
   std::vector<LevelInfo> levels;
 };
 

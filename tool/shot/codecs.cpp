@@ -184,6 +184,15 @@ std::optional<BodyLength> parse_body_length(const std::string& text) {
   return BodyLength{is_share ? value / 100 : value, is_share};
 }
 
+namespace {
+
+/// "0.5%", which reads back as the same bits.
+std::string percent_text(double share) {
+  return fmt::format("{}%", invert_exactly([](double p) { return p / 100; }, share, share * 100));
+}
+
+}  // namespace
+
 Codec<BodyLength> body_length() {
   Codec<BodyLength> codec;
   codec.type = "number or percent";
@@ -197,8 +206,23 @@ Codec<BodyLength> body_length() {
   codec.print = [](const BodyLength& length) -> std::optional<TomlValue> {
     if (length.value == 0) return std::nullopt;
     if (!length.is_share) return print_number(length.value);
-    const double percent = invert_exactly([](double p) { return p / 100; }, length.value, length.value * 100);
-    return toml_value(fmt::format("{}%", percent));
+    return toml_value(percent_text(length.value));
+  };
+  return codec;
+}
+
+Codec<double> percent() {
+  Codec<double> codec;
+  codec.type = "percent";
+  codec.accepted = "a share in quotes, above 0 and up to 50 %: \"0.5%\"";
+  codec.parse = [](const Place& place, const TomlValue& value) {
+    const std::optional<BodyLength> share = value.text() ? parse_body_length(*value.text()) : std::nullopt;
+    if (!share || !share->is_share) throw value_error(place, value, "it is no share");
+    return share->value;
+  };
+  codec.print = [](const double& share) -> std::optional<TomlValue> {
+    if (share == 0) return std::nullopt;
+    return toml_value(percent_text(share));
   };
   return codec;
 }

@@ -60,6 +60,9 @@ std::optional<BodyLength> parse_body_length(const std::string& text);
 /// A number in m, or a share of the diagonal as text with a % sign.
 Codec<BodyLength> body_length();
 
+/// A share as text with a % sign, "0.5%", above 0 up to 50 %; 0: left out.
+Codec<double> percent();
+
 /// A path, relative to the file that says it (or to the working directory in an override); printed absolute, so that a
 /// written shot can lie anywhere. An empty path is left out.
 Codec<std::string> file_path();

@@ -178,6 +178,25 @@ void choose_material(const Shot& shot, const Place& place, const TomlValue& valu
   }
 }
 
+/// What the error dial chooses is 0: sizes, steps and the tolerance that matters, where the shot does not give them.
+void open_for_dial(const TomlValue& value, Shot& shot) {
+  if (!shot.dial.is_on()) return;
+  const TomlValue& solver = *value.find("solver");
+  const auto is_open = [&solver](const char* name) { return solver.find(name) == nullptr; };
+  if (is_open("integrator")) shot.solver.integrator = Integrator::Bdf2;
+  const bool is_static = shot.settings.mode == SimulationMode::Static;
+  if (!is_static && is_open("substeps")) shot.solver.substeps = 0;
+  const bool balances = is_static || linearization(shot.solver) == Linearize::Iterated;
+  const char* tolerance = balances ? "force_tolerance" : "tolerance";
+  if (is_open(tolerance)) (balances ? shot.solver.force_tolerance : shot.solver.tolerance) = 0;
+  for (BodySettings& body : shot.bodies) {
+    const TomlValue& table = *value.find("body")->find(body.name);
+    const auto is_given = [&table](const std::string& name) { return table.find(name) != nullptr; };
+    const auto& sizes = alternatives().front().fields;
+    if (std::none_of(sizes.begin(), sizes.end(), is_given)) body.tets = 0;
+  }
+}
+
 void check_shot(const Place& place, const TomlValue& value, Shot& shot) {
   if (shot.bodies.empty()) {
     const FieldText text{
@@ -196,6 +215,7 @@ void check_shot(const Place& place, const TomlValue& value, Shot& shot) {
   }
   if (shot.camera.focal_length_mm.keys.empty()) shot.camera.focal_length_mm.keys = {{0, 50, Ease::Smooth}};
   resolve_lights(shot);
+  open_for_dial(value, shot);
 }
 
 void add_bodies_and_materials(Table<Shot>& table) {

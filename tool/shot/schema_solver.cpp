@@ -19,6 +19,17 @@ void check_substeps(const Place& place, const TomlValue& value, const SolverPara
       "Raise max_substeps.");
 }
 
+/// Both say how long steps are.
+void check_dial(const Place& place, const TomlValue& value, const Shot& shot) {
+  if (!shot.dial.is_on() || shot.solver.step_error == 0) return;
+  const TomlValue& given = *value.find("step_error");
+  const FieldText text{"", "", "", "", "error or step_error, not both", "", false, false};
+  throw value_error(
+      {place.path + ".step_error", &text, place.problems}, given,
+      fmt::format("error is given too ({}), and both choose the steps", to_string(value.find("error")->origin)),
+      "Remove one of the two; substeps can be given beside error.");
+}
+
 void check_newmark(const Place& place, const TomlValue& value, const NewmarkParams& newmark) {
   if (newmark.is_stable()) return;
   const TomlValue* beta = value.find("newmark_beta");
@@ -85,12 +96,12 @@ void add_time_stepping(Table<Shot>& t) {
            "dynamic: a step's one solve takes rotations and forces at its \"start\" (of first order) or at the "
            "\"predictor\" of its end (keeps second order); \"iterated\" solves until forces balance at its end. "
            "\"auto\" is \"start\" for \"euler\", \"predictor\" for \"bdf2\", \"iterated\" for \"newmark\".")
-      .add("substeps", of_solver(&P::substeps), whole<int>(1, 10000), "per frame",
-           "Steps of time in a frame; with step_error, the fewest.")
+      .add("substeps", of_solver(&P::substeps), absent_if_zero(whole<int>(1, 10000)), "per frame",
+           "Steps of time in a frame; with step_error, the fewest; with error it is chosen where it is not given.")
       .add("step_error", of_solver(&P::step_error), number({0, 1}), "",
            "dynamic: steps get shorter until their estimated error of place, over the body's size, is below; 0: off.")
       .add("max_substeps", of_solver(&P::max_substeps), whole<int>(1, kMostSubsteps), "per frame",
-           "step_error: the most steps of a frame. If they do not do, the run stops and says so.")
+           "step_error, error: the most steps of a frame. If they do not do, the run stops and says so.")
       .add("rest_tolerance", of_solver(&P::rest_tolerance), number({0, 1}), "",
            "dynamic: a body is not stepped if its velocities would move no point by more than this times its size, "
            "its forces balance to force_tolerance and its pins stay; 0: every body is stepped.")
@@ -101,12 +112,29 @@ void add_time_stepping(Table<Shot>& t) {
            "dynamic: within a frame, coarse levels stay while the solver needs no more iterations with them.");
 }
 
+void add_dial(Table<Shot>& t) {
+  const auto of_dial = [](auto member) {
+    return [member](auto& s) -> auto& {
+      return s.dial.*member;
+    };
+  };
+  t.add("error", of_dial(&DialSettings::error), percent(), "",
+        "Wanted error of the motion: distance of the surface's vertices from where ever finer meshes and steps would "
+        "take them, root mean square over the vertices in the worst frame, over the diagonal of the body's box. The "
+        "tets, substeps and tolerance that are not given are chosen for it, by short runs on coarse meshes, and the "
+        "integrator is \"bdf2\" where none is given; each run says the error it believes in. The error of a body is "
+        "another: how far its tetrahedra may be from its surface at rest.",
+        "none: nothing is chosen")
+      .add("max_tets", of_dial(&DialSettings::max_tets), whole<std::int64_t>(1000, 500000000), "",
+           "error: the most tetrahedra of a body. If they do not do, the run stops and says so.");
+}
+
 void add_limits(Table<Shot>& t) {
   constexpr Range kTolerance{0, 1, true};
-  t.add("tolerance", of_solver(&P::tolerance), number(kTolerance), "",
-        "dynamic: residual of a step's linear solve over its right-hand side.")
-      .add("force_tolerance", of_solver(&P::force_tolerance), number(kTolerance), "",
-           "static, iterated: residual force over the body's scale of force.")
+  t.add("tolerance", of_solver(&P::tolerance), absent_if_zero(number(kTolerance)), "",
+        "dynamic: residual of a step's linear solve over its right-hand side; with error it is chosen where not given.")
+      .add("force_tolerance", of_solver(&P::force_tolerance), absent_if_zero(number(kTolerance)), "",
+           "static, iterated: residual force over the body's scale of force; with error it is chosen where not given.")
       .add("max_iterations", of_solver(&P::max_iterations), whole<int>(1, 1000000), "", "Of one linear solve.")
       .add("max_newton_iterations", of_solver(&P::max_newton_iterations), whole<int>(1, 1000000), "",
            "static: per frame; iterated: per step.");
@@ -156,11 +184,13 @@ const Table<Shot>& solver_table() {
     t.sentence = "How the motion is computed.";
     add_material_law(t);
     add_time_stepping(t);
+    add_dial(t);
     add_limits(t);
     add_multigrid(t);
     t.add("threads", &Shot::threads, whole<int>(0, 4096), "", "0: all processors. Results do not depend on it.");
     t.check = [](const Place& place, const TomlValue& value, Shot& shot) {
       check_newmark(place, value, shot.solver.newmark);
+      check_dial(place, value, shot);
       check_substeps(place, value, shot.solver);
     };
     return t;

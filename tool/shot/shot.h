@@ -98,7 +98,7 @@ struct BodySettings {
   std::string tetrahedra;          ///< resolved path of given tetrahedra; or
   double edge = 0;                 ///< m; or
   std::int64_t tets = 0;           ///< number of tetrahedra; or
-  BodyLength error;                ///< largest distance to the surface; one of the four is set
+  BodyLength error;                ///< largest distance to the surface; one of the four is set, or solver.error chooses
   bool graded = false;             ///< with tets or edge: sizes by what the surface asks for
   TetMode mode = TetMode::Conforming;
   bool optimize = false;                   ///< makes the worst angles of the tetrahedra better
@@ -165,12 +165,20 @@ struct GoldenSettings {
   double threshold = 0.02;  ///< largest allowed block error
 };
 
+/// The error dial: what it chooses is 0 in the shot, and filled in body by body (tool/stages/dial_stage.h).
+struct DialSettings {
+  double error = 0;                 ///< wanted error of the motion over the diagonal of a body's box; 0: no dial
+  std::int64_t max_tets = 1000000;  ///< of a body
+  bool is_on() const { return error > 0; }
+};
+
 struct Shot {
   std::string path;  ///< the file as given
   ShotSettings settings;
   std::vector<BodySettings> bodies;  ///< in the order of the file
   std::map<std::string, MaterialSettings> materials;
   SolverParams solver;
+  DialSettings dial;
   int threads = 0;  ///< 0: all processors
   Vec3 gravity = Vec3(0, -9.81, 0);
   CameraSettings camera;

@@ -123,22 +123,31 @@ StageKey filled_key(const BodySettings& body, const LoadedBody& loaded) {
       .key();
 }
 
+FilledBody fill_body_anew(const BodySettings& body, const LoadedBody& loaded, const RunContext& context) {
+  FilledBody filled;
+  filled.normals = vertex_normals(loaded.surface, loaded.surface.positions);
+  filled.mesh = make_tets(body, loaded, context);
+  const ScopedStage stage(context.times, "tetrahedralize/embed");
+  filled.embedding = embed_points(loaded.surface.positions, filled.normals, filled.mesh, context.threads);
+  if (!body.tetrahedra.empty()) require_match(body, loaded, filled);
+  return filled;
+}
+
 FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const StageKey& key,
                      const RunContext& context) {
   FilledBody filled;
-  filled.normals = vertex_normals(loaded.surface, loaded.surface.positions);
   const auto fill = [&] {
-    filled.mesh = make_tets(body, loaded, context);
-    const ScopedStage stage(context.times, "tetrahedralize/embed");
-    filled.embedding = embed_points(loaded.surface.positions, filled.normals, filled.mesh, context.threads);
-    if (!body.tetrahedra.empty()) require_match(body, loaded, filled);
+    filled = fill_body_anew(body, loaded, context);
     return pack(filled);
   };
   const Cache::Produced produced = context.cache.produce(
       kTetrahedraStage, key, [&] { context.stop_if_cancelled(); }, fill);
   filled.from_cache = produced.from_cache;
   filled.seconds = produced.seconds;
-  if (produced.from_cache) unpack(produced.bytes, filled);
+  if (produced.from_cache) {
+    filled.normals = vertex_normals(loaded.surface, loaded.surface.positions);
+    unpack(produced.bytes, filled);
+  }
   return filled;
 }
 

@@ -38,6 +38,9 @@ StageKey filled_key(const BodySettings& body, const LoadedBody& loaded);
 FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const StageKey& key,
                      const RunContext& context);
 
+/// The same without the cache: for meshes that nobody asks for again.
+FilledBody fill_body_anew(const BodySettings& body, const LoadedBody& loaded, const RunContext& context);
+
 /// Adds what shapes the materials of a body's elements: its own, and its regions. Throws input_error as
 /// resolve_constraints, for regions.
 void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, const SurfaceMesh& surface);

@@ -11,20 +11,52 @@ namespace softreel {
 
 struct ShotRun::Body {
   LoadedBody loaded;
+  StageKey dial_key;
+  std::optional<BodyDial> dial;
+  Shot resolved;
   std::unique_ptr<BodySimulation> simulation;
 };
 
-ShotRun::ShotRun(const Shot& shot, const RunContext& context) : shot_(shot), context_(context) {
-  for (const BodySettings& settings : shot.bodies) {
+ShotRun::ShotRun(const Shot& shot, const RunContext& context, DialUse dial) : shot_(shot), context_(context) {
+  for (std::size_t b = 0; b < shot.bodies.size(); ++b) {
+    const BodySettings& settings = shot.bodies[b];
     context.stop_if_cancelled();
     auto body = std::make_unique<Body>();
     body->loaded = load_body(settings, context);
     for (const std::string& fact : body->loaded.facts) context.log.info(settings.name + ": " + fact);
-    // Selections that take nothing are said before the long work starts.
-    body->simulation = std::make_unique<BodySimulation>(shot, settings, body->loaded,
-                                                        resolve_constraints(settings, body->loaded.surface), context);
     bodies_.push_back(std::move(body));
   }
+  // Selections that take nothing are said before the long work starts.
+  std::vector<BodyConstraints> constraints;
+  for (std::size_t b = 0; b < shot.bodies.size(); ++b)
+    constraints.push_back(resolve_constraints(shot.bodies[b], bodies_[b]->loaded.surface));
+  for (std::size_t b = 0; b < shot.bodies.size(); ++b) resolve(b, std::move(constraints[b]), dial);
+}
+
+/// Chooses what the shot leaves open for a body; then all its keys are known.
+void ShotRun::resolve(std::size_t index, BodyConstraints constraints, DialUse use) {
+  Body& body = *bodies_[index];
+  const BodySettings& asked = shot_.bodies[index];
+  if (shot_.dial.is_on()) {
+    body.dial_key = softreel::dial_key(shot_, asked, body.loaded, constraints);
+    body.dial = use == DialUse::Turn ? turn_body_dial(shot_, asked, body.loaded, constraints, body.dial_key, context_)
+                                     : stored_dial(shot_, body.dial_key, context_);
+  }
+  body.resolved = filled_in(shot_, index, body.dial);
+  body.simulation = std::make_unique<BodySimulation>(body.resolved, body.resolved.bodies[index], body.loaded,
+                                                     std::move(constraints), context_);
+}
+
+const Shot& ShotRun::resolved(std::size_t body) const {
+  return bodies_[body]->resolved;
+}
+
+const std::optional<BodyDial>& ShotRun::dial(std::size_t body) const {
+  return bodies_[body]->dial;
+}
+
+const StageKey& ShotRun::dial_key(std::size_t body) const {
+  return bodies_[body]->dial_key;
 }
 
 ShotRun::~ShotRun() = default;
@@ -56,6 +88,7 @@ StageKey ShotRun::surfaces_key(int frame, const SkinRequest& request) const {
 std::vector<CacheItem> ShotRun::items(int first, int last) const {
   std::vector<CacheItem> items;
   for (const auto& body : bodies_) {
+    if (shot_.dial.is_on()) items.push_back(cache_item(kDialStage, body->dial_key));
     items.push_back(cache_item(kTetrahedraStage, body->simulation->filled_key()));
     for (int frame = first; frame <= last; ++frame)
       items.push_back(cache_item(kSimulationStage, body->simulation->frame_key(frame)));

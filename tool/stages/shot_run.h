@@ -2,12 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tool/shot/shot.h"
 #include "tool/stages/body_stage.h"
 #include "tool/stages/cache_use.h"
+#include "tool/stages/dial_stage.h"
 #include "tool/stages/run_context.h"
 #include "tool/stages/simulate_stage.h"
 
@@ -29,18 +31,30 @@ struct SkinRequest {
   int segments = 1;    ///< straight pieces while the shutter is open
 };
 
+/// What becomes of an error dial that was not turned yet.
+enum class DialUse {
+  Turn,   ///< pilots run
+  LookUp  ///< nothing is run: keys are those of default sizes, for commands that only look
+};
+
 /// Reading keys and loaded bodies is thread-safe; all else belongs to one thread at a time.
 class ShotRun {
  public:
-  /// Loads the bodies, resolves their selections, and finds all keys; nothing is filled or simulated yet. shot and
-  /// context are kept by reference.
-  ShotRun(const Shot& shot, const RunContext& context);
+  /// Loads the bodies, resolves their selections, turns the error dial if there is one, and finds all keys; nothing
+  /// else is filled or simulated yet. shot and context are kept by reference.
+  ShotRun(const Shot& shot, const RunContext& context, DialUse dial = DialUse::Turn);
   ~ShotRun();
 
   const Shot& shot() const { return shot_; }
   const RunContext& context() const { return context_; }
   std::size_t body_count() const { return bodies_.size(); }
-  const BodySettings& settings(std::size_t body) const { return shot_.bodies[body]; }
+  /// The shot as the body is simulated: with what the error dial chose for it.
+  const Shot& resolved(std::size_t body) const;
+  const BodySettings& settings(std::size_t body) const { return resolved(body).bodies[body]; }
+  /// What the error dial chose; none where it is off or was not turned.
+  const std::optional<BodyDial>& dial(std::size_t body) const;
+  /// Empty where it is off.
+  const StageKey& dial_key(std::size_t body) const;
   const LoadedBody& loaded(std::size_t body) const;
   const BodySimulation& simulation(std::size_t body) const;
   /// The tetrahedra of a body; null if no frame asked for them.
@@ -61,6 +75,7 @@ class ShotRun {
 
  private:
   struct Body;
+  void resolve(std::size_t index, BodyConstraints constraints, DialUse use);
 
   const Shot& shot_;
   const RunContext& context_;

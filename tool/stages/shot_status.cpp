@@ -40,6 +40,7 @@ ResultKeys find_keys(const ShotRun& run, Outputs& outputs) {
   const Shot& shot = run.shot();
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const std::string& name = run.settings(b).name;
+    if (shot.dial.is_on()) keys[{kDialStage, name, 0}] = run.dial_key(b);
     keys[{kTetrahedraStage, name, 0}] = run.simulation(b).filled_key();
     for (int frame = first_simulated_frame(shot); frame <= shot.settings.last_frame; ++frame)
       keys[{kSimulationStage, name, frame}] = run.simulation(b).frame_key(frame);
@@ -61,7 +62,7 @@ class StatusFinder {
         quiet_{context.threads, no_log_, context.times, context.cache, context.cancelled} {}
 
   std::vector<StageStatus> find() {
-    const ShotRun run(shot_, quiet_);
+    const ShotRun run(shot_, quiet_, DialUse::LookUp);
     keys_ = find_keys(run, outputs_);
     now_ = snapshot(run);
     for (const auto& [name, key] : keys_) {
@@ -74,7 +75,7 @@ class StatusFinder {
     release_unneeded();
     add_movie();
     const auto place = [](const StageStatus& status) {
-      constexpr std::array kOrder{kTetrahedraStage, kSimulationStage, kPictures, kMovie};
+      constexpr std::array kOrder{kDialStage, kTetrahedraStage, kSimulationStage, kPictures, kMovie};
       return std::find(kOrder.begin(), kOrder.end(), status.stage) - kOrder.begin();
     };
     std::stable_sort(statuses_.begin(), statuses_.end(),
@@ -86,7 +87,7 @@ class StatusFinder {
   StageStatus& status_of(const ResultName& name) {
     for (StageStatus& status : statuses_)
       if (status.stage == name.stage && status.what == name.what) return status;
-    statuses_.push_back({name.stage, name.what, {}, name.stage != kTetrahedraStage, {}});
+    statuses_.push_back({name.stage, name.what, {}, name.stage != kTetrahedraStage && name.stage != kDialStage, {}});
     return statuses_.back();
   }
 
@@ -159,7 +160,7 @@ class StatusFinder {
   std::optional<ResultKeys> keys_of(const TomlValue& document) {
     try {
       const Shot shot = parse_shot(shot_.path, document);
-      return find_keys(ShotRun(shot, quiet_), outputs_);
+      return find_keys(ShotRun(shot, quiet_, DialUse::LookUp), outputs_);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::Interrupt) throw;
       return std::nullopt;  // a mesh that is gone, say

@@ -192,6 +192,7 @@ newmark_gamma = 0.7
 linearize = "iterated"
 step_error = 1e-4
 max_substeps = 64
+max_tets = 50000
 rest_tolerance = 1e-6
 matrix_lag = 0.05
 keep_hierarchy = false

@@ -1,0 +1,44 @@
+/// The error dial on small bodies: what it believes beside what is true.
+#include <gtest/gtest.h>
+
+#include "tests/benchmark/dial/dial_study.h"
+
+namespace softreel::bench {
+namespace {
+
+class ErrorDialOn : public ::testing::Test {
+ protected:
+  static void expect_honest(const DialProblem& problem) {
+    const DialStudy study = study_dial(problem);
+    const DialTurn* before = nullptr;
+    for (const DialTurn& turn : study.turns) {
+      const DialChoice& choice = turn.choice;
+      EXPECT_TRUE(is_within_band(turn)) << turn.asked << ": believed " << choice.believed.total() << ", true "
+                                        << turn.truth;
+      EXPECT_TRUE(choice.reached) << turn.asked;
+      EXPECT_LE(turn.truth, 2 * turn.asked);
+      if (before != nullptr) {
+        EXPECT_GE(choice.chosen.tets, before->choice.chosen.tets);
+        EXPECT_GE(choice.chosen.substeps, before->choice.chosen.substeps);
+        EXPECT_LT(turn.truth, before->truth);
+      }
+      before = &turn;
+    }
+    EXPECT_GT(before->choice.chosen.tets, study.turns.front().choice.chosen.tets);
+  }
+};
+
+TEST_F(ErrorDialOn, ABendingBarBelievesWhatIsNearlyTrue) {
+  expect_honest({"static_bar", "", 12, 0, 40000, {0.05, 0.01}});
+}
+
+TEST_F(ErrorDialOn, AFallingBarBelievesWhatIsNearlyTrue) {
+  expect_honest({"falling_bar", "", 12, 0, 30000, {0.05, 0.02}});
+}
+
+TEST_F(ErrorDialOn, ATwistedBarBelievesWhatIsNearlyTrue) {
+  expect_honest({"twist", "", 12, 0, 20000, {0.05, 0.01}});
+}
+
+}  // namespace
+}  // namespace softreel::bench

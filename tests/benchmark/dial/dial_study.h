@@ -1,0 +1,47 @@
+/// One shot whose error dial is turned to several errors, and the truth to compare them with.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/dynamics/error_dial.h"
+
+namespace softreel::bench {
+
+/// A shot of tests/benchmark/dial, NAME.toml.
+struct DialProblem {
+  std::string name;
+  std::string title;           ///< one sentence
+  int across = 0;              ///< a bar: the truth is that of bars cut into so many cubes across, and half as many
+  std::int64_t fine_tets = 0;  ///< else: of a mesh of so many tetrahedra, and of an eighth of them
+  std::int64_t most_tets = 0;  ///< that the dial may choose
+  std::vector<double> errors;  ///< wanted, from the largest
+};
+
+/// One turn of the dial.
+struct DialTurn {
+  double asked = 0;  ///< over the diagonal of the body's box, as all errors here
+  DialChoice choice;
+  double truth = 0;          ///< distance of the chosen run from the truth
+  double seconds = 0;        ///< processor time of the chosen run
+  double pilot_seconds = 0;  ///< of the pilots
+  double ratio() const { return choice.believed.total() / truth; }
+};
+
+/// Believed within a factor of two of what is true.
+bool is_within_band(const DialTurn& turn);
+
+struct DialStudy {
+  std::vector<DialTurn> turns;
+  double truth_doubt = 0;  ///< how far the truth is from the finest motion that it was extrapolated from
+};
+
+/// Turns the dial on each error and finds the truth, which is led on from two meshes, one with edges half as long as
+/// the other's (Richardson): a bar's are cut where its pins end (plane_bar.h), so that their errors are of second
+/// order; another body's are softreel's own, of first order. Steps are an eighth of a frame, corrected by what steps of
+/// a 64th change on a coarse mesh. Throws Error if the shot cannot be read, std::runtime_error if a run fails.
+DialStudy study_dial(const DialProblem& problem);
+
+}  // namespace softreel::bench
