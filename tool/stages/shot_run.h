@@ -19,7 +19,8 @@ struct SkinnedBody {
     std::vector<Vec3> positions;  ///< as surface.positions, m
     std::vector<Vec3> normals;    ///< empty if not asked for
   };
-  std::vector<Time> times;  ///< times.back() is the frame itself
+  std::vector<Time> times;           ///< times.back() is the frame itself
+  std::vector<Vec3> next_positions;  ///< at the next frame, if asked for
 };
 
 /// What is wanted of each frame.
@@ -27,6 +28,9 @@ struct SkinRequest {
   bool normals = true;
   double shutter = 0;  ///< share of a frame, ending at the frame
   int segments = 1;    ///< straight pieces while the shutter is open
+  /// The next frame too; of the shot's last one, where it would be if it went on as from the frame before, or stays if
+  /// there is none.
+  bool next = false;
 };
 
 /// Reading keys and loaded bodies is thread-safe; all else belongs to one thread at a time.
@@ -61,6 +65,9 @@ class ShotRun {
 
  private:
   struct Body;
+
+  std::vector<Vec3> next_positions(Body& body, int frame, const std::vector<Vec3>& positions,
+                                   const std::vector<Vec3>& previous_nodes);
 
   const Shot& shot_;
   const RunContext& context_;
