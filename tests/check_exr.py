@@ -24,7 +24,7 @@ name = "two"
 frames = [1, 3]
 [body.carried]
 mesh = "box.obj"
-tets = 300
+edge = 0.3
 translate = [-0.8, 0.5, 0]
 material = "gum"
 [[body.carried.pin]]
@@ -32,7 +32,7 @@ select = { box = { min = [-0.1, -0.1, -0.1], max = [1.1, 1.1, 1.1] }, unit = "bo
 keys = [ { frame = 1, ease = "linear" }, { frame = 3, translate = [%g, 0, 0] } ]
 [body.standing]
 mesh = "box.obj"
-tets = 300
+edge = 0.3
 translate = [0.8, 0.5, 0]
 material = "wax"
 [[body.standing.pin]]

@@ -120,7 +120,7 @@ void draw_strokes(DisplayImage& image, const std::vector<Stroke>& strokes, float
       for (const Stroke& stroke : strokes) distance = std::min(distance, distance_to(stroke, point));
       if (style.halo > 0)
         blend(image, x, y, style.shade,
-              style.opacity * std::clamp((pen + style.halo - distance) / style.halo, 0.0f, 1.0f));
+              style.opacity * std::clamp(2 * (pen + style.halo - distance) / style.halo, 0.0f, 1.0f));
       blend(image, x, y, style.color, style.opacity * std::clamp(pen + 0.5f - distance, 0.0f, 1.0f));
     }
 }

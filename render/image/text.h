@@ -15,7 +15,7 @@ struct TextStyle {
   float height = 14;            ///< pixels, of a capital letter; below 7 strokes run together
   Vec3f color = Vec3f::Ones();  ///< display values, 0 to 1
   float opacity = 1;            ///< 0 to 1
-  float halo = 0;               ///< pixels of shade round each stroke, for text on any picture
+  float halo = 0;  ///< pixels of shade round each stroke (dense in the inner half), for text on any picture
   Vec3f shade = Vec3f::Zero();  ///< display values of the halo
 };
 
