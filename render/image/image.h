@@ -1,6 +1,7 @@
 /// Pixels with named channels, scene-linear.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Channel {
 struct Image {
   int width = 0, height = 0;
   std::vector<Channel> channels;
+  std::map<std::string, std::string> attributes = {};  ///< texts in the header of an EXR, by name
 
   /// The channel of that name, or null.
   const Channel* find(const std::string& name) const;

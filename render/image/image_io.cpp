@@ -14,6 +14,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 #include <fmt/format.h>
 #include <png.h>
 
@@ -152,6 +153,7 @@ std::vector<std::uint8_t> encode_exr(const Image& image) {
   try {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
+    for (const auto& [name, text] : image.attributes) header.insert(name, Imf::StringAttribute(text));
     Imf::FrameBuffer frame;
     for (const Channel& channel : image.channels) {
       CHECK(channel.pixels.size() == pixel_count(image.width, image.height));
@@ -190,6 +192,9 @@ Image read_exr(const std::string& path) {
     const std::size_t pixels = pixel_count(image.width, image.height);
     for (auto c = file.header().channels().begin(); c != file.header().channels().end(); ++c)
       image.channels.push_back({c.name(), std::vector<float>(pixels)});
+    for (auto a = file.header().begin(); a != file.header().end(); ++a)
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+        image.attributes[a.name()] = text->value();
     Imf::FrameBuffer frame;
     for (const Channel& channel : image.channels) frame.insert(channel.name, float_slice(channel, image.width, window));
     file.setFrameBuffer(frame);

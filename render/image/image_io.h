@@ -13,7 +13,9 @@ namespace softreel {
 /// How scene-linear radiance becomes a display picture.
 enum class ViewTransform {
   Standard,  ///< sRGB curve, clipped
-  Filmic     ///< soft shoulder that keeps bright colours from clipping, then the sRGB curve
+  Filmic,    ///< soft shoulder that keeps bright colours from clipping, then the sRGB curve
+  AcesFit,   ///< S. Hill's fit of the ACES 1.0 reference rendering and sRGB output transforms, then the sRGB curve
+  Raw        ///< the linear values themselves, clipped: for data, and to see what is there
 };
 
 /// 8-bit display pixels, height x width x 3.

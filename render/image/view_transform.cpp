@@ -23,8 +23,29 @@ Vec3f filmic(const Vec3f& linear) {
   return (1 - whiteness) * (compressed / peak) * c + Vec3f::Constant(whiteness * compressed);
 }
 
-std::uint8_t to_byte(float display_linear) {
-  return static_cast<std::uint8_t>(std::lround(255 * srgb_encode(display_linear)));
+/// A fit of the ACES 1.0 RRT and sRGB ODT by Stephen Hill (2015, published in M. Pettineo's BakingLab, MIT): a film
+/// curve of three channels in a space where saturated lights turn to white. It is no ACES: no input transforms, no
+/// dimming.
+Vec3f aces_fit(const Vec3f& linear) {
+  static const Mat3f into = [] {
+    Mat3f m;
+    m << 0.59719f, 0.35458f, 0.04823f, 0.07600f, 0.90834f, 0.01566f, 0.02840f, 0.13383f, 0.83777f;
+    return m;
+  }();
+  static const Mat3f back = [] {
+    Mat3f m;
+    m << 1.60475f, -0.53108f, -0.07367f, -0.10208f, 1.10813f, -0.00605f, -0.00327f, -0.07276f, 1.07602f;
+    return m;
+  }();
+  // Beyond this the curve is flat to the last bit, and its squares would leave the range of single.
+  const Vec3f v = into * linear.cwiseMax(0.0f).cwiseMin(1e6f);
+  const Eigen::Array3f a = v.array();
+  const Eigen::Array3f curved = (a * (a + 0.0245786f) - 0.000090537f) / (a * (0.983729f * a + 0.4329510f) + 0.238081f);
+  return (back * curved.matrix()).cwiseMax(0.0f).cwiseMin(1.0f);
+}
+
+std::uint8_t to_byte(float code) {
+  return static_cast<std::uint8_t>(std::lround(255 * code));
 }
 
 }  // namespace
@@ -40,6 +61,7 @@ float srgb_decode(float encoded) {
 
 Vec3f apply_view(ViewTransform view, const Vec3f& linear) {
   if (view == ViewTransform::Filmic) return filmic(linear);
+  if (view == ViewTransform::AcesFit) return aces_fit(linear);
   return linear.cwiseMax(0.0f).cwiseMin(1.0f);
 }
 
@@ -53,7 +75,9 @@ DisplayImage to_display(const Image& image, ViewTransform view, float exposure) 
   out.pixels.resize(3 * r->pixels.size());
   for (std::size_t k = 0; k < r->pixels.size(); ++k) {
     const Vec3f display = apply_view(view, scale * Vec3f(r->pixels[k], g->pixels[k], b->pixels[k]));
-    for (int c = 0; c < 3; ++c) out.pixels[3 * k + static_cast<std::size_t>(c)] = to_byte(display[c]);
+    for (int c = 0; c < 3; ++c)
+      out.pixels[3 * k + static_cast<std::size_t>(c)] =
+          to_byte(view == ViewTransform::Raw ? display[c] : srgb_encode(display[c]));
   }
   return out;
 }

@@ -10,7 +10,7 @@ namespace softreel {
 float srgb_encode(float linear);
 float srgb_decode(float encoded);
 
-/// Scene-linear (after exposure) to display-linear in [0, 1].
+/// Scene-linear (after exposure) to display-linear in [0, 1]. For Raw the code value itself: no curve comes after it.
 Vec3f apply_view(ViewTransform view, const Vec3f& linear);
 
 }  // namespace softreel

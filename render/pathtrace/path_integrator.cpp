@@ -108,7 +108,9 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     if (!found) break;
     const SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
     const Bsdf& bsdf = bsdf_at(hit, point, ray);
-    if (bounces_ == 0) first_hit_ = {bsdf.albedo(), point.shading_normal, hit.distance};
+    if (bounces_ == 0)
+      first_hit_ = {bsdf.albedo(), point.shading_normal, hit.distance, point.position,
+                    hit.mesh,      hit.triangle,         hit.u,        hit.v};
     if (point.inside && bsdf.transmits())
       throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());
     if (!point.inside) add(bsdf.emission());

@@ -36,6 +36,9 @@ struct FirstHit {
   Vec3f albedo = Vec3f::Zero();
   Vec3f normal = Vec3f::Zero();
   float distance = 0;
+  Vec3f position = Vec3f::Zero();
+  Index mesh = -1, triangle = -1;  ///< of Picture::meshes; -1: nothing
+  float u = 0, v = 0;              ///< as RayHit
 };
 
 /// One path.

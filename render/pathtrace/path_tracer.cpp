@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "render/pathtrace/path_integrator.h"
 #include "render/pathtrace/picture_hash.h"
+#include "render/pathtrace/pixel_channels.h"
 #include "render/scene/camera_frame.h"
 
 namespace softreel {
@@ -17,9 +18,8 @@ namespace {
 
 constexpr int kTile = 16;  ///< pixels, edge of the unit of work
 
-/// Channels in the order in which a pixel's values are stored.
-constexpr std::array<const char*, 10> kChannelNames = {"R",        "G",        "B",        "albedo.R", "albedo.G",
-                                                       "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"};
+/// The colour's planes; the other channels follow.
+constexpr std::array<const char*, 3> kColorNames = {"R", "G", "B"};
 
 void check_meshes(const Scene& scene) {
   for (const MotionMesh& mesh : scene.meshes) {
@@ -30,23 +30,27 @@ void check_meshes(const Scene& scene) {
       if (!time.normals.empty()) CHECK(time.normals.size() == time.positions.size());
       CHECK(time.normals.empty() == mesh.times.front().normals.empty());
     }
+    for (const std::size_t count : {mesh.next_positions.size(), mesh.strain.size()})
+      if (count > 0) CHECK(count == mesh.times.front().positions.size());
   }
 }
 
-Image empty_image(const RenderParams& params) {
+Image empty_image(const RenderParams& params, const ChannelLayout& channels) {
   Image image{params.width, params.height, {}};
-  const std::size_t channels = params.auxiliary ? kChannelNames.size() : 3;
   const auto pixels = static_cast<std::size_t>(params.width) * static_cast<std::size_t>(params.height);
-  for (std::size_t c = 0; c < channels; ++c) image.channels.push_back({kChannelNames[c], std::vector<float>(pixels)});
+  for (const char* name : kColorNames) image.channels.push_back({name, std::vector<float>(pixels)});
+  channels.add_planes(image);
   return image;
 }
 
 /// One picture in the making.
 class Frame {
  public:
-  Frame(const Scene& scene, const RenderParams& params, const Picture& picture, Image& image)
+  Frame(const Scene& scene, const RenderParams& params, const Picture& picture, const ChannelLayout& channels,
+        Image& image)
       : params_(params),
         picture_(picture),
+        channels_(channels),
         image_(image),
         camera_(camera_frame(scene.camera, params.width, params.height)),
         hash_(picture_hash(scene)) {}
@@ -64,34 +68,20 @@ class Frame {
 
   void render_pixel(int x, int y) const {
     const Sampler sampler(hash_, x, y);
-    std::array<double, kChannelNames.size()> sums{};
-    int hits = 0;
+    std::array<double, kColorNames.size()> sums{};
+    PixelChannels gathered(channels_);
     for (int s = 0; s < params_.samples; ++s) {
       PathIntegrator path(picture_, sampler, static_cast<std::uint32_t>(s));
-      const Vec3f radiance = path.trace(camera_ray(sampler, static_cast<std::uint32_t>(s), x, y));
+      const Ray ray = camera_ray(sampler, static_cast<std::uint32_t>(s), x, y);
+      const Vec3f radiance = path.trace(ray);
       for (int c = 0; c < 3; ++c) sums[static_cast<std::size_t>(c)] += static_cast<double>(radiance[c]);
-      if (params_.auxiliary) hits += add_auxiliary(path.first_hit(), sums);
+      if (image_.channels.size() > kColorNames.size()) gathered.add(ray, path.first_hit());
     }
-    store(x, y, sums, hits);
-  }
-
-  static int add_auxiliary(const FirstHit& hit, std::array<double, kChannelNames.size()>& sums) {
-    for (int c = 0; c < 3; ++c) {
-      sums[static_cast<std::size_t>(3 + c)] += static_cast<double>(hit.albedo[c]);
-      sums[static_cast<std::size_t>(6 + c)] += static_cast<double>(hit.normal[c]);
-    }
-    sums[9] += static_cast<double>(hit.distance);
-    return hit.distance > 0 ? 1 : 0;
-  }
-
-  /// Means over the samples; of the depth, over those that hit something.
-  void store(int x, int y, const std::array<double, kChannelNames.size()>& sums, int hits) const {
     const auto pixel =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(params_.width) + static_cast<std::size_t>(x);
-    for (std::size_t c = 0; c < image_.channels.size(); ++c) {
-      const int count = c == 9 ? std::max(1, hits) : params_.samples;
-      image_.channels[c].pixels[pixel] = static_cast<float>(sums[c] / count);
-    }
+    for (std::size_t c = 0; c < kColorNames.size(); ++c)
+      image_.channels[c].pixels[pixel] = static_cast<float>(sums[c] / params_.samples);
+    gathered.store(image_, kColorNames.size(), pixel);
   }
 
   Ray camera_ray(const Sampler& sampler, std::uint32_t sample, int x, int y) const {
@@ -114,6 +104,7 @@ class Frame {
 
   const RenderParams& params_;
   const Picture& picture_;
+  const ChannelLayout& channels_;
   Image& image_;
   CameraFrame camera_;
   std::uint64_t hash_;
@@ -173,6 +164,14 @@ struct PathTracer::Parts {
 PathTracer::PathTracer(const Threads& threads, StageTimes& times) : parts_(std::make_unique<Parts>(threads, times)) {}
 PathTracer::~PathTracer() = default;
 
+ChannelSet RenderParams::all_channels() const {
+  ChannelSet all = channels;
+  if (auxiliary)
+    for (const PictureChannel channel : {PictureChannel::Albedo, PictureChannel::Normal, PictureChannel::Depth})
+      all.add(channel);
+  return all;
+}
+
 Image PathTracer::render(const Scene& scene, const RenderParams& params, const std::function<bool()>& cancelled) {
   CHECK(params.samples >= 1);
   CHECK(params.samples <= 1 << 20);
@@ -190,8 +189,9 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
     parts_->threads.run([&] { parts_->rays->build(picture.meshes); });
   }
   const ScopedStage stage(parts_->times, "render/trace");
-  Image image = empty_image(params);
-  const Frame frame(scene, params, picture, image);
+  const ChannelLayout channels(scene, picture, params.all_channels(), params.width, params.height);
+  Image image = empty_image(params, channels);
+  const Frame frame(scene, params, picture, channels, image);
   parts_->threads.for_chunks(frame.tiles(), 1, [&](std::int64_t begin, std::int64_t) {
     if (cancelled && cancelled())
       throw Error(ErrorKind::Interrupt, "Rendering was interrupted; the unfinished picture is dropped.");

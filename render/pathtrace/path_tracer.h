@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/base/timer.h"
 #include "render/image/image.h"
+#include "render/pathtrace/picture_channels.h"
 #include "render/scene/scene.h"
 
 namespace softreel {
@@ -21,6 +22,10 @@ struct RenderParams {
   /// they would be fireflies. 0: off. The picture is unbiased with clamp and caustic_roughness 0.
   float caustic_roughness = 0.4f;
   bool auxiliary = false;  ///< albedo, normal and depth channels too
+  ChannelSet channels;     ///< more channels
+
+  /// `channels`, and those that `auxiliary` stands for.
+  ChannelSet all_channels() const;
 };
 
 /// Renders frames of one sequence. The trees are built for each frame alone, so that no frame knows of earlier ones.
@@ -32,7 +37,7 @@ class PathTracer {
   PathTracer(const Threads& threads, StageTimes& times);
   ~PathTracer();
 
-  /// Channels R, G, B and, if asked, albedo.R/G/B, normal.X/Y/Z, depth.Z (m along the ray; 0 where nothing was hit).
+  /// Channels R, G, B, then those of params.all_channels() under the names in ChannelLayout::add_planes.
   /// `cancelled` is asked between tiles; if it says yes, an Error of kind Interrupt is thrown.
   Image render(const Scene& scene, const RenderParams& params, const std::function<bool()>& cancelled = {});
 

@@ -259,7 +259,7 @@ void EglPreview::set_common(const GlProgram& program, const Environment& gradien
   program.set("horizon", Vec3f(gradient.strength * gradient.horizon));
   program.set("nadir", Vec3f(gradient.strength * gradient.nadir));
   program.set("exposure_scale", std::exp2(exposure));
-  program.set("filmic", view == ViewTransform::Filmic ? 1 : 0);
+  program.set("view", static_cast<int>(view));
 }
 
 void EglPreview::set_lights(const Scene& scene) const {

@@ -30,19 +30,27 @@ vec3 environment(float height) {
 /// Display values, as apply_view of render/image/view_transform.h.
 inline constexpr const char* kDisplayFunctions = R"(
 uniform float exposure_scale;
-uniform bool filmic;
+uniform int view;  // 0 standard, 1 filmic, 2 aces-fit, 3 raw
+vec3 aces_fit(vec3 linear) {
+  const mat3 into = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
+  const mat3 back = mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
+  vec3 a = into * min(linear, 1e6);
+  return back * ((a * (a + 0.0245786) - 0.000090537) / (a * (0.983729 * a + 0.4329510) + 0.238081));
+}
 vec3 to_srgb(vec3 c) {
   return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
 }
 vec3 display(vec3 radiance) {
   vec3 c = max(exposure_scale * radiance, 0.0);
   float peak = max(c.r, max(c.g, c.b));
-  if (filmic && peak > 0.76) {
+  if (view == 1 && peak > 0.76) {
     float compressed = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
     float whiteness = 1.0 - 1.0 / (0.15 * (peak - compressed) + 1.0);
     c = mix(c * (compressed / peak), vec3(compressed), whiteness);
   }
-  return to_srgb(clamp(c, 0.0, 1.0));
+  if (view == 2) c = aces_fit(c);
+  c = clamp(c, 0.0, 1.0);
+  return view == 3 ? c : to_srgb(c);
 }
 )";
 

@@ -36,6 +36,9 @@ struct MotionMesh {
   };
   std::vector<Time> times;  ///< 1: no motion blur
   Appearance appearance;
+  std::string material;               ///< its name, for the channel of material ids
+  std::vector<Vec3f> next_positions;  ///< at the next frame, for the channel of motion; empty: it stands still
+  std::vector<float> strain;          ///< per vertex, for the channel of that name; empty: none
   std::optional<EdgeLines> lines;
 };
 
@@ -56,6 +59,7 @@ struct Ground {
 
 struct Scene {
   Camera camera;
+  std::optional<Camera> next_camera;  ///< at the next frame, for the channel of motion; none: it stands still
   std::vector<MotionMesh> meshes;
   std::vector<AreaLight> area_lights;
   std::vector<SunLight> suns;

@@ -95,6 +95,8 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
 struct Parsed {
   ShotOptions shot;
   ExportOptions exporting;
+  SheetCommandOptions sheet;
+  int turntable = 0;
   GoldenOptions golden;
   BatchOptions batch;
   StatusOptions status;
@@ -110,7 +112,30 @@ using Runner = std::function<int()>;
 void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   CLI::App* render = app.add_subcommand("render", "simulate a shot and trace its pictures and movie");
   add_shot_options(*render, parsed.shot);
-  render->callback([&] { run = [&parsed] { return run_render(parsed.shot); }; });
+  render
+      ->add_option("--turntable", parsed.turntable,
+                   "instead of the shot, N pictures of its first frame (or of --frames N) from all round: the camera "
+                   "turns about the vertical through its target; SHOT.turntable.####.png and .mp4")
+      ->option_text("N")
+      ->check(CLI::Range(1, 10000))
+      ->group("Shot");
+  render->callback([&] {
+    run = [&parsed] {
+      return parsed.turntable > 0 && !parsed.shot.dry_run ? run_turntable(parsed.shot, parsed.turntable)
+                                                          : run_render(parsed.shot);
+    };
+  });
+
+  CLI::App* sheet =
+      app.add_subcommand("sheet", "render some frames, and write small pictures of them on one: SHOT.sheet.png");
+  add_shot_options(*sheet, parsed.sheet.shot);
+  sheet->add_option("--count", parsed.sheet.sheet.count, "pictures at most, equally far apart in time [16]")
+      ->check(CLI::Range(1, 1000))
+      ->group("Shot");
+  sheet->add_option("--columns", parsed.sheet.sheet.columns, "pictures side by side [4]")
+      ->check(CLI::Range(1, 100))
+      ->group("Shot");
+  sheet->callback([&] { run = [&parsed] { return run_sheet(parsed.sheet); }; });
 
   CLI::App* simulate = app.add_subcommand("simulate", "simulate a shot into its cache, without pictures");
   add_shot_options(*simulate, parsed.shot);
@@ -126,11 +151,17 @@ void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   add_shot_options(*preview, parsed.shot);
   preview->callback([&] { run = [&parsed] { return run_preview(parsed.shot); }; });
 
-  CLI::App* golden = app.add_subcommand("golden", "render a shot's golden frames and compare them; status 1 on change");
-  add_shot_options(*golden, parsed.golden.shot);
-  golden->add_option("--reference", parsed.golden.reference, "folder of golden images [golden beside the shot]")
+  CLI::App* golden = app.add_subcommand(
+      "golden", "render shots at test quality and compare them with golden images; status 1 on change");
+  golden->add_option("shots", parsed.golden.shots, "shot files (TOML)")->required()->option_text("SHOT ...");
+  add_run_options(*golden, parsed.golden.shot);
+  golden->add_option("--reference", parsed.golden.reference, "folder of golden images [golden beside each shot]")
+      ->option_text("DIR")
       ->group("Files");
-  golden->add_flag("--update", parsed.golden.update, "make the rendered frames the golden ones")->group("Running");
+  golden
+      ->add_flag("--update", parsed.golden.update,
+                 "make the rendered frames the golden ones, with a record of their geometry")
+      ->group("Running");
   golden->callback([&] { run = [&parsed] { return run_golden(parsed.golden); }; });
 
   CLI::App* batch = app.add_subcommand("batch", "render several shots; one that fails stops no other");

@@ -6,11 +6,23 @@
 
 #include "tool/commands/session.h"
 #include "tool/report/studio.h"
+#include "tool/stages/sheet_stage.h"
 
 namespace softreel {
 
 /// Simulates and renders a shot: pictures, and a movie of all its frames.
 int run_render(const ShotOptions& options);
+
+/// Renders the first of the frames asked for from `count` places on a circle round what the camera looks at.
+int run_turntable(const ShotOptions& options, int count);
+
+struct SheetCommandOptions {
+  ShotOptions shot;
+  SheetOptions sheet;
+};
+
+/// Renders some frames of a shot and puts small pictures of them on one.
+int run_sheet(const SheetCommandOptions& options);
 
 /// Simulates a shot into the cache.
 int run_simulate(const ShotOptions& options);
@@ -31,8 +43,9 @@ int run_export(const ExportOptions& options);
 int run_preview(const ShotOptions& options);
 
 struct GoldenOptions {
-  ShotOptions shot;
-  std::string reference;  ///< folder of the golden images; empty: "golden" beside the shot
+  ShotOptions shot;                ///< its `shot` is not used
+  std::vector<std::string> shots;  ///< at least one
+  std::string reference;           ///< folder of the golden images; empty: "golden" beside each shot
   bool update = false;
 };
 

@@ -1,13 +1,17 @@
+#include <cmath>
 #include <filesystem>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "render/image/flip.h"
 #include "render/image/image_compare.h"
 #include "render/pathtrace/path_tracer.h"
 #include "tool/commands/commands.h"
+#include "tool/report/golden_page.h"
 #include "tool/stages/atomic_file.h"
+#include "tool/stages/golden_record.h"
 #include "tool/stages/outputs.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
@@ -29,63 +33,191 @@ std::set<int> golden_frames(const Shot& shot) {
   return {shot.golden.frames.begin(), shot.golden.frames.end()};
 }
 
-/// Compares one picture with its golden image; leaves both and their difference in the output folder if it changed.
-/// Returns a line that says the outcome, empty if the picture is the golden one or near enough.
-std::string judge(const DisplayImage& picture, const std::string& golden_path, const Outputs& outputs, int frame,
-                  double threshold) {
-  if (!fs::exists(golden_path))
-    return fmt::format("{}: there is no golden image. Look at the frame, then make one with --update.", golden_path);
-  const DisplayImage golden = read_png(golden_path);
-  const ImageDifference difference = compare(picture, golden);
-  if (difference.identical || (difference.same_size && difference.block_error <= threshold)) return {};
-  const std::string actual = outputs.frame_path(frame, "actual.png");
-  write_file(actual, encode_png(picture));
-  if (!difference.same_size)
-    return fmt::format("{}: has {} x {} pixels, the frame has {} x {}; see {}", golden_path, golden.width,
-                       golden.height, picture.width, picture.height, actual);
-  write_file(outputs.frame_path(frame, "difference.png"), encode_png(difference_picture(picture, golden)));
-  return fmt::format(
-      "{}: changed: largest mean error of an 8 x 8 block {:.4f} (accepted: {}), at pixel ({}, {}); rmse "
-      "{:.5f}; see {} and the difference beside it",
-      golden_path, difference.block_error, threshold, difference.worst_x, difference.worst_y, difference.rmse, actual);
+/// The shot as it is compared: small and coarse enough to be rendered after every change.
+Shot at_test_quality(Shot shot) {
+  RenderParams& params = shot.render.params;
+  if (params.width > shot.golden.max_width) {
+    params.height =
+        std::max(1L, std::lround(static_cast<double>(params.height) * shot.golden.max_width / params.width));
+    params.width = shot.golden.max_width;
+  }
+  params.samples = std::min(params.samples, shot.golden.max_samples);
+  params.auxiliary = false;
+  params.channels = {};
+  return shot;
+}
+
+/// One shot's golden images.
+class GoldenShot {
+ public:
+  GoldenShot(const GoldenOptions& options, const std::string& path)
+      : options_(options),
+        session_(with_path(options.shot, path)),
+        shot_(at_test_quality(session_.shot())),
+        outputs_(shot_.output.directory, shot_.settings.name, session_.context().log),
+        folder_(options.reference.empty() ? fs::path(shot_.path).parent_path() / "golden"
+                                          : fs::path(options.reference)),
+        run_(shot_, session_.context()),
+        scenes_(run_),
+        tracer_(session_.context().threads, session_.context().times),
+        settings_(golden_settings(run_)) {
+    if (!options.update) record_ = read_golden_record(record_path());
+  }
+
+  /// Compares or updates all frames; adds them to `frames`.
+  void run(std::vector<GoldenPageFrame>& frames) {
+    const std::set<int> wanted = golden_frames(shot_);
+    int done = 0;
+    GoldenRecord now{settings_, {}};
+    session_.console().begin("golden frames", static_cast<int>(wanted.size()));
+    for (const int frame : wanted) {
+      frames.push_back(take(frame, now));
+      session_.console().advance(++done, fmt::format("frame {}", frame));
+    }
+    if (options_.update) keep(record_path(), to_json(now));
+    traced_ = done;
+  }
+
+  void finish(const std::string& page) {
+    RunReport report = session_.report("golden", run_);
+    report.pictures.traced = traced_;
+    report.made = made_;
+    if (!page.empty()) report.made.push_back(page);
+    session_.finish(report);
+  }
+
+  const std::string& output_folder() const { return outputs_.folder(); }
+
+ private:
+  static ShotOptions with_path(ShotOptions options, const std::string& path) {
+    options.shot = path;
+    return options;
+  }
+  std::string record_path() const { return (folder_ / (shot_.settings.name + ".golden.json")).string(); }
+  std::string golden_path(int frame) const {
+    return (folder_ / fmt::format("{}.{:04}.png", shot_.settings.name, frame)).string();
+  }
+  template <typename Content>
+  void keep(const std::string& path, const Content& content) {
+    write_file(path, content);
+    made_.push_back(path);
+  }
+
+  GoldenPageFrame take(int frame, GoldenRecord& now) {
+    const std::vector<SkinnedBody> bodies = run_.skin(frame, skin_request(shot_.render));
+    now.frames[frame] = golden_geometry(run_, bodies);
+    const Image image =
+        tracer_.render(scenes_.at(frame, bodies), shot_.render.params, [] { return cancellation().load(); });
+    const DisplayImage picture = to_display(image, shot_.output.view, static_cast<float>(shot_.output.exposure));
+    GoldenPageFrame result{shot_.settings.name, frame, false, {}, {}, {}, {}, {}};
+    if (options_.update) {
+      keep(golden_path(frame), encode_png(picture));
+      return result;
+    }
+    judge(picture, result);
+    const GoldenCause cause = find_cause(record_, frame, settings_, now.frames[frame]);
+    if (result.changed || (record_ && !cause.same_geometry)) result.cause = cause.words;
+    const std::string line = fmt::format("{}: {}", golden_path(frame), result.verdict);
+    if (result.changed)
+      session_.console().warn(line + (result.cause.empty() ? "" : "\n  " + result.cause));
+    else if (!result.cause.empty())
+      session_.console().info(line + "; but " + result.cause);
+    return result;
+  }
+
+  /// Compares a picture with its golden image; leaves both and their difference in the output folder if it changed.
+  void judge(const DisplayImage& picture, GoldenPageFrame& result) {
+    const std::string path = golden_path(result.frame), actual = outputs_.frame_path(result.frame, "actual.png");
+    if (!fs::exists(path)) {
+      result.changed = true;
+      result.verdict = "there is no golden image. Look at the frame, then make one with --update.";
+      result.now = encode_png(picture);
+      return;
+    }
+    const DisplayImage golden = read_png(path);
+    const ImageDifference difference = compare(picture, golden);
+    if (difference.identical) {
+      result.verdict = "equal bits";
+      return;
+    }
+    result.now = encode_png(picture);
+    if (!difference.same_size) {
+      result.changed = true;
+      result.verdict = fmt::format("has {} x {} pixels, the frame has {} x {}; see {}", golden.width, golden.height,
+                                   picture.width, picture.height, actual);
+      write_file(actual, result.now);
+      return;
+    }
+    const FlipMap map = flip(golden, picture);
+    const FlipSummary summary = summarize(map);
+    const double threshold = shot_.golden.threshold;
+    result.changed = summary.worst_block > threshold;
+    result.verdict =
+        fmt::format("{}: largest FLIP error of a {} x {} block {:.4f} (accepted: {}), at pixel ({}, {}); mean {:.5f}",
+                    result.changed ? "changed" : "other bits, the same to the eye", kFlipBlock, kFlipBlock,
+                    summary.worst_block, threshold, summary.worst_x, summary.worst_y, summary.mean);
+    if (!result.changed) return;
+    result.golden = encode_png(golden);
+    result.difference = encode_png(flip_picture(map));
+    write_file(actual, result.now);
+    write_file(outputs_.frame_path(result.frame, "difference.png"), result.difference);
+    result.verdict += fmt::format("; see {} and the difference beside it", actual);
+  }
+
+  const GoldenOptions& options_;
+  Session session_;
+  Shot shot_;
+  Outputs outputs_;
+  fs::path folder_;
+  ShotRun run_;
+  SceneStage scenes_;
+  PathTracer tracer_;
+  SettingsSnapshot settings_;
+  std::optional<GoldenRecord> record_;
+  std::vector<std::string> made_;
+  int traced_ = 0;
+};
+
+/// One shot of several: what is wrong with it is said, and the others go on.
+bool fails(const GoldenOptions& options, const std::string& path, const std::function<void()>& work) {
+  try {
+    work();
+    return false;
+  } catch (const Error& error) {
+    if (options.shots.size() == 1 || error.kind() == ErrorKind::Interrupt) throw;
+    Console(Verbosity::Quiet, false).warn(fmt::format("{}: {}", path, error.what()));
+    return true;
+  }
 }
 
 }  // namespace
 
 int run_golden(const GoldenOptions& options) {
-  if (options.shot.dry_run) return run_plan(options.shot);
-  Session session(options.shot);
-  const Shot& shot = session.shot();
-  const Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
-  const fs::path folder =
-      options.reference.empty() ? fs::path(shot.path).parent_path() / "golden" : fs::path(options.reference);
-  ShotRun run(shot, session.context());
-  SceneStage scenes(run);
-  PathTracer tracer(session.context().threads, session.context().times);
-  const std::set<int> frames = golden_frames(shot);
-  int done = 0, changed = 0;
-  RunReport made;
-  session.console().begin("golden frames", static_cast<int>(frames.size()));
-  for (const int frame : frames) {
-    const Scene scene = scenes.at(frame, run.skin(frame, skin_request(shot.render)));
-    const Image image = tracer.render(scene, shot.render.params, [] { return cancellation().load(); });
-    const DisplayImage picture = to_display(image, shot.output.view, static_cast<float>(shot.output.exposure));
-    const std::string path = (folder / fmt::format("{}.{:04}.png", shot.settings.name, frame)).string();
-    if (options.update) {
-      write_file(path, encode_png(picture));
-      made.made.push_back(path);
-    } else if (const std::string verdict = judge(picture, path, outputs, frame, shot.golden.threshold);
-               !verdict.empty()) {
-      session.console().warn(verdict);
-      ++changed;
-    }
-    session.console().advance(++done, fmt::format("frame {}", frame));
+  std::vector<GoldenPageFrame> frames;
+  std::string page_path;
+  int failed = 0;
+  for (const std::string& path : options.shots) {
+    const bool has_failed = fails(options, path, [&] {
+      if (options.shot.dry_run) {
+        ShotOptions one = options.shot;
+        one.shot = path;
+        run_plan(one);
+        return;
+      }
+      GoldenShot shot(options, path);
+      if (page_path.empty()) page_path = (fs::path(shot.output_folder()) / "golden.html").string();
+      shot.run(frames);
+      if (!options.update) write_file(page_path, golden_page(frames));
+      shot.finish(options.update ? "" : page_path);
+    });
+    failed += has_failed ? 1 : 0;
   }
-  RunReport report = session.report("golden", run);
-  report.pictures.traced = done;
-  report.made = made.made;
-  session.finish(report);
-  if (changed > 0) throw work_error(fmt::format("{} of {} golden images changed.", changed, done));
+  const auto changed = std::count_if(frames.begin(), frames.end(), [](const auto& frame) { return frame.changed; });
+  if (failed > 0)
+    throw work_error(fmt::format("{} of {} shots failed; of the others {} of {} golden images changed.", failed,
+                                 options.shots.size(), changed, frames.size()));
+  if (changed > 0)
+    throw work_error(fmt::format("{} of {} golden images changed; see {}", changed, frames.size(), page_path));
   return 0;
 }
 

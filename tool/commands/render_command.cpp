@@ -30,6 +30,10 @@ std::string made_line(const Outputs& outputs, const FrameSpan& frames, const std
              : outputs.frame_path(frames.first, extension) + " .. " + outputs.frame_path(frames.last, extension);
 }
 
+std::vector<int> frames_of_sheet(const Session& session) {
+  return sheet_frames(session.frames().first, session.frames().last, SheetOptions().count);
+}
+
 /// Nothing of an older shot stays under a name of this one: a killed run leaves no mixture.
 void remove_outdated(const Session& session, PictureStage& pictures, Outputs& outputs) {
   const int removed = pictures.remove_outdated(session.frames().first, session.frames().last);
@@ -37,6 +41,8 @@ void remove_outdated(const Session& session, PictureStage& pictures, Outputs& ou
   const ShotSettings& settings = session.shot().settings;
   if (is_movie_outdated(session.shot(), settings.first_frame, settings.last_frame, outputs))
     outputs.remove({outputs.path("mp4")});
+  if (is_sheet_outdated(frames_of_sheet(session), SheetOptions().columns, outputs))
+    outputs.remove({outputs.path("sheet.png")});
 }
 
 }  // namespace
@@ -66,6 +72,8 @@ int run_render(const ShotOptions& options) {
   const bool whole = frames.first == shot.settings.first_frame && frames.last == shot.settings.last_frame;
   if (shot.output.movie && shot.output.png && whole && frames.count() > 1)
     made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
+  if (shot.output.contact_sheet && shot.output.png)
+    made.push_back(make_sheet(shot, frames_of_sheet(session), SheetOptions().columns, outputs, session.context()));
   RunReport report = session.report("render", run);
   report.pictures = counts;
   report.made = made;

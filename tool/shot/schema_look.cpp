@@ -187,6 +187,42 @@ const Table<Ground>& ground_table() {
   return table;
 }
 
+namespace {
+
+/// A list of names of channels.
+Codec<ChannelSet> channels_codec() {
+  static const std::vector<std::pair<std::string, PictureChannel>> known{{"albedo", PictureChannel::Albedo},
+                                                                         {"normal", PictureChannel::Normal},
+                                                                         {"depth", PictureChannel::Depth},
+                                                                         {"position", PictureChannel::Position},
+                                                                         {"motion", PictureChannel::Motion},
+                                                                         {"object_id", PictureChannel::ObjectId},
+                                                                         {"material_id", PictureChannel::MaterialId},
+                                                                         {"strain", PictureChannel::Strain},
+                                                                         {"samples", PictureChannel::Samples}};
+  static const Codec<PictureChannel> one = choice<PictureChannel>(known);
+  Codec<ChannelSet> codec;
+  codec.type = "list of texts";
+  codec.accepted = "any of " + one.accepted;
+  codec.parse = [](const Place& place, const TomlValue& value) {
+    const TomlValue::Array* items = value.array();
+    if (items == nullptr) throw value_error(place, value, "it is " + kind_name(value) + ", not a list");
+    ChannelSet set;
+    for (std::size_t i = 0; i < items->size(); ++i) set.add(one.parse(place.item(i), (*items)[i]));
+    return set;
+  };
+  codec.print = [](const ChannelSet& set) -> std::optional<TomlValue> {
+    if (set.bits == 0) return std::nullopt;
+    TomlValue::Array items;
+    for (const auto& [name, channel] : known)
+      if (set.has(channel)) items.push_back(toml_value(name));
+    return toml_value(std::move(items));
+  };
+  return codec;
+}
+
+}  // namespace
+
 const Table<RenderSettings>& render_table() {
   static const Table<RenderSettings> table = [] {
     using R = RenderSettings;
@@ -215,7 +251,10 @@ const Table<RenderSettings>& render_table() {
              "Straight pieces of each point's path while the shutter is open.")
         .add(
             "auxiliary", [](auto& r) -> auto& { return r.params.auxiliary; }, toggle(), "",
-            "Writes albedo, normal and depth into the EXR too.");
+            "Writes albedo, normal and depth into the EXR too.")
+        .add(
+            "channels", [](auto& r) -> auto& { return r.params.channels; }, channels_codec(), "",
+            "What the EXR holds beside the colour; with \"motion\" each frame asks for the next one.", "none");
     return t;
   }();
   return table;
@@ -227,12 +266,22 @@ const Table<OutputSettings>& output_table() {
     Table<O> t;
     t.sentence = "What is written.";
     t.add("directory", &O::directory, text(), "", "Where to, relative to the working directory.")
-        .add("view", &O::view,
-             choice<ViewTransform>({{"standard", ViewTransform::Standard}, {"filmic", ViewTransform::Filmic}}), "",
-             "How light becomes colour on a screen; \"filmic\" keeps bright colours from clipping.")
+        .add(
+            "view", &O::view,
+            choice<ViewTransform>({{"standard", ViewTransform::Standard},
+                                   {"filmic", ViewTransform::Filmic},
+                                   {"aces-fit", ViewTransform::AcesFit},
+                                   {"raw", ViewTransform::Raw}}),
+            "",
+            "How light becomes colour in the PNG. \"standard\": sRGB, clipped; \"filmic\": the same below 0.76, bright "
+            "colours roll off (Khronos PBR Neutral); \"aces-fit\": S. Hill's fit of ACES 1.0, more contrast; \"raw\": "
+            "no curve at all.")
         .add("exposure", &O::exposure, number({-64, 64, false}), "stops", "Each stop doubles the brightness.")
         .add("png", &O::png, toggle(), "", "Writes a PNG of each frame.")
         .add("exr", &O::exr, toggle(), "", "Writes a scene-linear EXR of each frame.")
+        .add("burn_in", &O::burn_in, toggle(), "", "Writes shot and frame number into the PNG, and so into the movie.")
+        .add("contact_sheet", &O::contact_sheet, toggle(), "",
+             "Writes SHOT.sheet.png with a small picture of up to 16 frames, too.")
         .add("movie", &O::movie, toggle(), "", "Joins the frames to a movie, where ffmpeg is installed.")
         .add("cache_limit", &O::cache_limit_gb, number({0, 1e9, false}), "GB",
              "Stored results beyond it are removed, those used longest ago first; 0: no limit.");

@@ -110,7 +110,11 @@ const Table<GoldenSettings>& golden_table() {
     Table<G> t;
     t.sentence = "Which pictures are compared with stored ones, and how closely.";
     t.add("frames", &G::frames, frame_list_codec(), "frames", "Frames that are compared.", "first, middle and last")
-        .add("threshold", &G::threshold, number(kNotNegative), "", "Largest error that a block of pixels may have.");
+        .add("threshold", &G::threshold, number(kNotNegative), "",
+             "Largest FLIP error (0: looks the same, 1: green for blue) that a block of 16 x 16 pixels may have.")
+        .add("max_width", &G::max_width, whole<int>(16, 32768), "pixels",
+             "A wider picture is compared at this width; the height follows.")
+        .add("max_samples", &G::max_samples, whole<int>(1, 1 << 20), "paths a pixel", "More are not taken.");
     return t;
   }();
   return table;

@@ -157,12 +157,15 @@ struct OutputSettings {
   ViewTransform view = ViewTransform::Filmic;
   double exposure = 0;  ///< stops
   bool png = true, exr = false, movie = true;
+  bool burn_in = false;        ///< shot and frame number in the PNG
+  bool contact_sheet = false;  ///< SHOT.sheet.png
   double cache_limit_gb = 20;  ///< of stored results; 0: no limit
 };
 
 struct GoldenSettings {
   std::vector<int> frames;  ///< empty: first, middle and last
-  double threshold = 0.02;  ///< largest allowed block error
+  double threshold = 0.15;  ///< largest allowed FLIP error of a block
+  int max_width = 480, max_samples = 16;
 };
 
 /// The error dial: what it chooses is 0 in the shot, and filled in body by body (tool/stages/dial_stage.h).

@@ -152,6 +152,16 @@ class Pipeline {
 
 }  // namespace
 
+PictureCounts& PictureCounts::operator+=(const PictureCounts& other) {
+  kept += other.kept;
+  recalled += other.recalled;
+  developed += other.developed;
+  linked += other.linked;
+  traced += other.traced;
+  saved_seconds += other.saved_seconds;
+  return *this;
+}
+
 PictureCounts make_pictures(ShotRun& run, SceneStage& scenes, PictureStage& pictures, int first, int last,
                             CacheUse& use, const FrameDone& done) {
   return Pipeline(run, scenes, pictures, use, done).run(first, last);

@@ -11,6 +11,7 @@ namespace softreel {
 struct PictureCounts {
   int kept = 0, recalled = 0, developed = 0, linked = 0, traced = 0;
   double saved_seconds = 0;  ///< what the frames that were not traced took when they were
+  PictureCounts& operator+=(const PictureCounts& other);
 };
 
 /// Called when a frame's files are under way or there, from the calling thread.

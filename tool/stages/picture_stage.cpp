@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "core/base/check.h"
 #include "render/image/half_picture.h"
 #include "render/image/image_io.h"
@@ -17,17 +19,27 @@ constexpr const char* kLinear = "half";
 PictureStage::PictureStage(const SceneStage& scenes, const Shot& shot, Outputs& outputs, const RunContext& context)
     : scenes_(scenes), shot_(shot), outputs_(outputs), context_(context) {}
 
-StageKey PictureStage::file_key(const std::string& extension, const StageKey& picture) const {
+BurnIn frame_words(const ShotSettings& settings, int frame) {
+  return {settings.name, fmt::format("{} / {}", frame, settings.last_frame)};
+}
+
+/// frame: matters only where it is written into the picture.
+StageKey PictureStage::file_key(int frame, const std::string& extension, const StageKey& picture) const {
   KeyHasher key(extension + " 2");
   key.add(picture);
   if (extension == "png") key.add(shot_.output.view).add(shot_.output.exposure);
+  if (extension == "png" && shot_.output.burn_in) {
+    const BurnIn words = frame_words(shot_.settings, frame);
+    key.add(words.left).add(words.right);
+  }
   return key.key();
 }
 
 std::vector<PictureStage::File> PictureStage::files(int frame, const StageKey& picture) const {
   std::vector<File> files;
   for (const auto& [extension, wanted] : {std::pair("png", shot_.output.png), std::pair("exr", shot_.output.exr)})
-    if (wanted) files.push_back({outputs_.frame_path(frame, extension), extension, file_key(extension, picture)});
+    if (wanted)
+      files.push_back({outputs_.frame_path(frame, extension), extension, file_key(frame, extension, picture)});
   return files;
 }
 
@@ -35,7 +47,7 @@ std::vector<CacheItem> PictureStage::items(int first, int last) const {
   std::vector<CacheItem> items;
   for (int frame = first; frame <= last; ++frame) {
     const StageKey trace = trace_key(frame);
-    items.push_back(cache_item(kPictureStage, file_key(kLinear, trace)));
+    items.push_back(cache_item(kPictureStage, file_key(frame, kLinear, trace)));
     for (const File& file : files(frame, trace)) items.push_back(cache_item(kPictureStage, file.key));
   }
   return items;
@@ -49,7 +61,7 @@ bool PictureStage::is_kept(int frame) const {
 
 bool PictureStage::is_stored(int frame) const {
   const StageKey trace = trace_key(frame);
-  if (!shot_.output.exr && context_.cache.has(kPictureStage, file_key(kLinear, trace))) return true;
+  if (!shot_.output.exr && context_.cache.has(kPictureStage, file_key(frame, kLinear, trace))) return true;
   const std::vector<File> wanted = files(frame, trace);
   return std::all_of(wanted.begin(), wanted.end(),
                      [&](const File& file) { return context_.cache.has(kPictureStage, file.key); });
@@ -82,7 +94,7 @@ bool PictureStage::recall(int frame, const StageKey& picture) {
   const StageKey trace = trace_key(frame);
   std::vector<Found> found;
   for (const File& file : files(frame, trace)) {
-    const auto record = load_picture_record(context_.cache, file_key(file.extension, picture));
+    const auto record = load_picture_record(context_.cache, file_key(frame, file.extension, picture));
     if (!record) return false;
     auto bytes = context_.cache.load_file(record->checksum);
     if (!bytes) return false;
@@ -96,22 +108,24 @@ bool PictureStage::recall(int frame, const StageKey& picture) {
   return true;
 }
 
-Bytes PictureStage::encode_display(const Bytes& half) const {
+Bytes PictureStage::encode_display(int frame, const Bytes& half) const {
   const ScopedStage stage(context_.times, "write");
-  return encode_png(to_display(decode_half(half), shot_.output.view, static_cast<float>(shot_.output.exposure)));
+  DisplayImage picture = to_display(decode_half(half), shot_.output.view, static_cast<float>(shot_.output.exposure));
+  if (shot_.output.burn_in) burn_in(picture, frame_words(shot_.settings, frame));
+  return encode_png(picture);
 }
 
 bool PictureStage::develop(int frame, const StageKey& picture) {
   if (!shot_.output.png) return false;
-  const auto linear = load_picture_record(context_.cache, file_key(kLinear, picture));
+  const auto linear = load_picture_record(context_.cache, file_key(frame, kLinear, picture));
   if (!linear) return false;
   const auto half = context_.cache.load_file(linear->checksum);
   if (!half) return false;
   // The display picture goes to the cache; then all files of the frame come from there, or the frame must be traced.
-  const Bytes png = encode_display(*half);
+  const Bytes png = encode_display(frame, *half);
   const Cache::StoredFile stored = context_.cache.store_file(png);
   if (stored.is_there)
-    store_picture_record(context_.cache, file_key("png", picture), {stored.checksum, linear->seconds});
+    store_picture_record(context_.cache, file_key(frame, "png", picture), {stored.checksum, linear->seconds});
   if (shot_.output.exr) return recall(frame, picture);
   place(files(frame, trace_key(frame)).front(), stored, png, linear->seconds);
   return true;
@@ -137,13 +151,13 @@ void PictureStage::keep(int frame, const StageKey& content, const Image& image, 
     const Cache::StoredFile stored = context_.cache.store_file(bytes);
     if (stored.is_there)
       for (const StageKey& picture : {trace, content})
-        store_picture_record(context_.cache, file_key(extension, picture), {stored.checksum, seconds});
+        store_picture_record(context_.cache, file_key(frame, extension, picture), {stored.checksum, seconds});
     return stored;
   };
   const Bytes half = encode_half(image);
   store(kLinear, half);
   for (const File& file : files(frame, trace)) {
-    const Bytes bytes = file.extension == "exr" ? encode_exr(image) : encode_display(half);
+    const Bytes bytes = file.extension == "exr" ? encode_exr(image) : encode_display(frame, half);
     place(file, store(file.extension, bytes), bytes, seconds);
   }
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/image/burn_in.h"
 #include "render/pathtrace/path_tracer.h"
 #include "tool/stages/outputs.h"
 #include "tool/stages/picture_record.h"
@@ -21,6 +22,9 @@ enum class PictureSource {
   Linked,     ///< another frame looks the same
   Traced
 };
+
+/// What a burned-in frame says: "SHOT" and "FRAME / LAST FRAME".
+BurnIn frame_words(const ShotSettings& settings, int frame);
 
 /// Files of pictures in the output folder and in the cache. Thread-safe but for `trace`.
 class PictureStage {
@@ -60,8 +64,8 @@ class PictureStage {
 
  private:
   void place(const File& file, const Cache::StoredFile& stored, const Bytes& bytes, double seconds);
-  Bytes encode_display(const Bytes& half) const;
-  StageKey file_key(const std::string& extension, const StageKey& picture) const;
+  Bytes encode_display(int frame, const Bytes& half) const;
+  StageKey file_key(int frame, const std::string& extension, const StageKey& picture) const;
 
   const SceneStage& scenes_;
   const Shot& shot_;

@@ -75,7 +75,7 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
 }
 
 SkinRequest skin_request(const RenderSettings& settings) {
-  return {true, settings.shutter, settings.blur_segments};
+  return {true, settings.shutter, settings.blur_segments, settings.params.channels.has(PictureChannel::Motion)};
 }
 
 namespace {
@@ -121,6 +121,7 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
   load_environment();
   Scene scene;
   scene.camera = camera(frame);
+  if (shot.render.params.channels.has(PictureChannel::Motion)) scene.next_camera = camera(frame + 1);
   scene.area_lights = shot.area_lights;
   scene.suns = shot.suns;
   scene.environment = environment_;
@@ -130,6 +131,8 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
     mesh.name = shot.bodies[b].name;
     mesh.triangles = run_.loaded(b).surface.triangles;
     mesh.appearance = shot.materials.at(shot.bodies[b].material).appearance;
+    mesh.material = shot.bodies[b].material;
+    mesh.next_positions = to_float(bodies[b].next_positions);
     for (const SkinnedBody::Time& time : bodies[b].times)
       mesh.times.push_back({to_float(time.positions), to_float(time.normals)});
     scene.meshes.push_back(std::move(mesh));
@@ -163,12 +166,18 @@ void SceneStage::add_tracing(KeyHasher& key) const {
   const RenderParams& params = run_.shot().render.params;
   key.add(params.samples).add(params.max_bounces).add(params.clamp);
   key.add(params.caustic_roughness).add(params.auxiliary);
+  key.add(params.channels.bits);
+  for (const BodySettings& body : run_.shot().bodies) {
+    if (params.channels.has(PictureChannel::ObjectId)) key.add(body.name);
+    if (params.channels.has(PictureChannel::MaterialId)) key.add(body.material);
+  }
 }
 
 StageKey SceneStage::trace_key(int frame) const {
-  KeyHasher key("trace 2");
+  KeyHasher key("trace 3");
   add_look(key, camera(frame));
   add_tracing(key);
+  if (run_.shot().render.params.channels.has(PictureChannel::Motion)) add(key, camera(frame + 1));
   return key.add(run_.surfaces_key(frame, skin_request(run_.shot().render))).key();
 }
 
@@ -179,12 +188,15 @@ StageKey SceneStage::preview_key(int frame) const {
 }
 
 StageKey SceneStage::content_key(const Scene& scene) const {
-  KeyHasher key("picture 2");
+  KeyHasher key("picture 3");
   add_look(key, scene.camera);
   add_tracing(key);
+  if (scene.next_camera) add(key, *scene.next_camera);
   for (const MotionMesh& mesh : scene.meshes) {
     key.add(mesh.triangles);
     for (const MotionMesh::Time& time : mesh.times) key.add(time.positions).add(time.normals);
+    key.add(mesh.next_positions);
+    for (const float strain : mesh.strain) key.add(strain);
   }
   return key.key();
 }

@@ -80,7 +80,11 @@ StageKey ShotRun::surfaces_key(int frame, const SkinRequest& request) const {
   key.add(request.normals).add(request.shutter).add(blurred ? request.segments : 0);
   for (const auto& body : bodies_) {
     key.add(body->loaded.key).add(body->simulation->filled_key()).add(body->simulation->frame_key(frame));
-    if (blurred && frame > first_simulated_frame(shot_)) key.add(body->simulation->frame_key(frame - 1));
+    const bool at_end = frame == shot_.settings.last_frame;
+    if ((blurred || (request.next && at_end)) && frame > first_simulated_frame(shot_))
+      key.add(body->simulation->frame_key(frame - 1));
+    if (request.next) key.add("next");
+    if (request.next && !at_end) key.add(body->simulation->frame_key(frame + 1));
   }
   return key.key();
 }
@@ -129,7 +133,8 @@ std::vector<Vec3> positions_between(const std::vector<const std::vector<Vec3>*>&
 SkinnedBody ShotRun::skin_body(std::size_t index, int frame, const SkinRequest& request) {
   Body& body = *bodies_[index];
   std::vector<Vec3> previous;
-  if (request.shutter > 0 && frame > first_simulated_frame(shot_))
+  const bool at_end = frame == shot_.settings.last_frame;
+  if ((request.shutter > 0 || (request.next && at_end)) && frame > first_simulated_frame(shot_))
     previous = body.simulation->at(frame - 1).state.positions;
   const BodyFrame& state = body.simulation->at(frame);
   const FilledBody& filled = body.simulation->filled();
@@ -150,7 +155,23 @@ SkinnedBody ShotRun::skin_body(std::size_t index, int frame, const SkinRequest& 
     if (request.normals)
       at.normals = skin_normals(filled.normals, filled.embedding, filled.mesh, nodes, context_.threads);
   }
+  if (request.next) skinned.next_positions = next_positions(body, frame, skinned.times.back().positions, previous);
   return skinned;
+}
+
+/// positions: of the surface at the frame; previous_nodes: of the tetrahedra a frame earlier, empty if there is none.
+std::vector<Vec3> ShotRun::next_positions(Body& body, int frame, const std::vector<Vec3>& positions,
+                                          const std::vector<Vec3>& previous_nodes) {
+  const FilledBody& filled = body.simulation->filled();
+  const auto skinned = [&](const std::vector<Vec3>& nodes) {
+    return skin_positions(body.loaded.surface.positions, filled.embedding, filled.mesh, nodes, context_.threads);
+  };
+  if (frame < shot_.settings.last_frame) return skinned(body.simulation->at(frame + 1).state.positions);
+  std::vector<Vec3> next = positions;
+  if (previous_nodes.empty()) return next;
+  const std::vector<Vec3> previous = skinned(previous_nodes);
+  for (std::size_t v = 0; v < next.size(); ++v) next[v] += positions[v] - previous[v];
+  return next;
 }
 
 std::vector<SkinnedBody> ShotRun::skin(int frame, const SkinRequest& request) {

@@ -21,7 +21,8 @@ struct SkinnedBody {
     std::vector<Vec3> positions;  ///< as surface.positions, m
     std::vector<Vec3> normals;    ///< empty if not asked for
   };
-  std::vector<Time> times;  ///< times.back() is the frame itself
+  std::vector<Time> times;           ///< times.back() is the frame itself
+  std::vector<Vec3> next_positions;  ///< at the next frame, if asked for
 };
 
 /// What is wanted of each frame.
@@ -29,6 +30,9 @@ struct SkinRequest {
   bool normals = true;
   double shutter = 0;  ///< share of a frame, ending at the frame
   int segments = 1;    ///< straight pieces while the shutter is open
+  /// The next frame too; of the shot's last one, where it would be if it went on as from the frame before, or stays if
+  /// there is none.
+  bool next = false;
 };
 
 /// What becomes of an error dial that was not turned yet.
@@ -76,6 +80,9 @@ class ShotRun {
  private:
   struct Body;
   void resolve(std::size_t index, BodyConstraints constraints, DialUse use);
+
+  std::vector<Vec3> next_positions(Body& body, int frame, const std::vector<Vec3>& positions,
+                                   const std::vector<Vec3>& previous_nodes);
 
   const Shot& shot_;
   const RunContext& context_;

@@ -54,8 +54,10 @@ TEST(Png, ReadsBackWhatItWrote) {
 }
 
 TEST(Exr, ReadsBackEveryChannelBitForBit) {
-  const Image image = some_channels();
+  Image image = some_channels();
+  image.attributes["cryptomatte/1234567/conversion"] = "uint32_to_float32";
   const Image back = read_exr(written("softreel_io.exr", encode_exr(image)));
+  EXPECT_EQ(back.attributes.at("cryptomatte/1234567/conversion"), "uint32_to_float32");
   ASSERT_EQ(back.channels.size(), image.channels.size());
   EXPECT_EQ(back.width, 4);
   EXPECT_EQ(back.height, 3);

@@ -36,6 +36,28 @@ TEST(ApplyView, FilmicKeepsTheOrderOfChannelsAndTurnsBrightLightWhite) {
   EXPECT_GT(bright.z(), 0.9f);
 }
 
+TEST(ApplyView, AcesFitKeepsGreysGreyRisesAndStaysInRange) {
+  float before = -1;
+  for (float x = 1e-3f; x < 1e9f; x *= 1.5f) {
+    const Vec3f grey = apply_view(ViewTransform::AcesFit, Vec3f::Constant(x));
+    EXPECT_NEAR(grey.x(), grey.y(), 1e-3f) << x;
+    EXPECT_NEAR(grey.z(), grey.y(), 1e-3f) << x;
+    EXPECT_GE(grey.y(), before) << x;
+    EXPECT_LE(grey.y(), 1) << x;
+    before = grey.y();
+  }
+  EXPECT_EQ(apply_view(ViewTransform::AcesFit, Vec3f::Constant(-1)), apply_view(ViewTransform::AcesFit, Vec3f::Zero()));
+  const Vec3f bright = apply_view(ViewTransform::AcesFit, Vec3f(100, 5, 5));
+  EXPECT_GT(bright.y(), 0.3f) << "saturated lights turn towards white";
+  // The fit at 0.18, by hand: (0.18 (0.18 + 0.0245786) - 0.000090537) / (0.18 (0.983729 0.18 + 0.4329510) + 0.238081).
+  EXPECT_NEAR(apply_view(ViewTransform::AcesFit, Vec3f::Constant(0.18f)).y(), 0.10574f, 2e-4f);
+}
+
+TEST(ToDisplay, RawHasNoCurve) {
+  const Image image{1, 1, {{"R", {0.5f}}, {"G", {-1.0f}}, {"B", {3.0f}}}};
+  EXPECT_EQ(to_display(image, ViewTransform::Raw, 0).pixels, (std::vector<std::uint8_t>{128, 0, 255}));
+}
+
 TEST(ToDisplay, ExposureCountsInStops) {
   const Image image{1, 1, {{"R", {0.1f}}, {"G", {0.2f}}, {"B", {0.4f}}}};
   const Image doubled{1, 1, {{"R", {0.2f}}, {"G", {0.4f}}, {"B", {0.8f}}}};

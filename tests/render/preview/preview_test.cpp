@@ -64,9 +64,14 @@ TEST(EglPreview, DrawsTheSkyAsThePathTracerSeesIt) {
   Scene scene;
   scene.environment.zenith = Vec3f(0.1f, 0.2f, 0.9f);
   scene.environment.horizon = Vec3f(3, 2, 1);
-  const DisplayImage traced = to_display(rendered(scene, small_params(32, 16)), ViewTransform::Filmic, -0.5f);
-  const DisplayImage drawn = preview->draw(scene, 32, 32, ViewTransform::Filmic, -0.5f);
-  for (std::size_t k = 0; k < traced.pixels.size(); ++k) EXPECT_NEAR(traced.pixels[k], drawn.pixels[k], 3);
+  const Image light = rendered(scene, small_params(32, 16));
+  for (const ViewTransform view :
+       {ViewTransform::Standard, ViewTransform::Filmic, ViewTransform::AcesFit, ViewTransform::Raw}) {
+    const DisplayImage traced = to_display(light, view, -0.5f);
+    const DisplayImage drawn = preview->draw(scene, 32, 32, view, -0.5f);
+    for (std::size_t k = 0; k < traced.pixels.size(); ++k)
+      EXPECT_NEAR(traced.pixels[k], drawn.pixels[k], 3) << static_cast<int>(view);
+  }
 }
 
 TEST(EglPreview, IsLitFromTheSideOfTheLight) {

@@ -137,7 +137,7 @@ TEST(Help, NamesEverySubcommandAndEndsWithStatusZero) {
   const Outcome outcome = run("softreel --help");
   EXPECT_EQ(outcome.status, 0);
   for (const char* command :
-       {"render", "simulate", "export", "preview", "golden", "batch", "check", "inspect", "tetrahedralize"}) {
+       {"render", "sheet", "simulate", "export", "preview", "golden", "batch", "check", "inspect", "tetrahedralize"}) {
     EXPECT_NE(outcome.out.find(command), std::string::npos) << command;
     EXPECT_EQ(run(fmt::format("softreel {} --help", command)).status, 0) << command;
   }

@@ -267,6 +267,7 @@ caustic_roughness = 0.2
 shutter = 0.5
 blur_segments = 4
 auxiliary = true
+channels = ["albedo", "normal", "depth", "position", "motion", "object_id", "material_id", "strain", "samples"]
 
 [output]
 directory = "pictures"
@@ -275,11 +276,15 @@ exposure = 0.5
 png = false
 exr = true
 movie = false
+burn_in = true
+contact_sheet = true
 cache_limit = 7
 
 [golden]
 frames = [-3, 10, 48]
 threshold = 0.05
+max_width = 320
+max_samples = 4
 )";
 
 }  // namespace softreel

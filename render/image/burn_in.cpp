@@ -1,0 +1,36 @@
+#include "render/image/burn_in.h"
+
+#include <algorithm>
+
+#include "render/image/text.h"
+
+namespace softreel {
+namespace {
+
+/// The text, or as much of it as is no wider, with dots.
+std::string shortened(std::string text, float height, float width) {
+  if (text_width(text, height) <= width) return text;
+  while (!text.empty() && text_width(text + "...", height) > width) {
+    // Whole characters of UTF-8 only.
+    while (text.size() > 1 && static_cast<unsigned char>(text.back()) >> 6 == 0x2) text.pop_back();
+    text.pop_back();
+  }
+  return text.empty() ? "" : text + "...";
+}
+
+}  // namespace
+
+void burn_in(DisplayImage& image, const BurnIn& words) {
+  TextStyle style;
+  style.height = std::max(7.0f, static_cast<float>(image.height) / 36);
+  style.color = Vec3f::Constant(0.96f);
+  style.halo = std::max(1.5f, style.height / 6);
+  style.opacity = 0.92f;
+  const float margin = style.height;
+  const float y = static_cast<float>(image.height) - margin - style.height;
+  const float right = static_cast<float>(image.width) - margin - text_width(words.right, style.height);
+  draw_text(image, right, y, words.right, style);
+  draw_text(image, margin, y, shortened(words.left, style.height, right - 2 * margin), style);
+}
+
+}  // namespace softreel

@@ -1,0 +1,63 @@
+#include "tool/stages/sheet_stage.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "render/image/contact_sheet.h"
+
+namespace softreel {
+namespace {
+
+StageKey sheet_key(const std::vector<int>& frames, int columns, const Outputs& outputs) {
+  KeyHasher key("sheet 1");
+  key.add(outputs.shot_name()).add(frames).add(columns);
+  for (const int frame : frames) {
+    const auto entry = outputs.entry(outputs.frame_path(frame, "png"));
+    key.add(entry ? entry->checksum : "");
+  }
+  return key.key();
+}
+
+std::string title_of(const Shot& shot, const DisplayImage& picture) {
+  const ShotSettings& settings = shot.settings;
+  return fmt::format("{}    frames {} to {}, {} a second    {} x {}", settings.name, settings.first_frame,
+                     settings.last_frame, settings.fps, picture.width, picture.height);
+}
+
+}  // namespace
+
+std::vector<int> sheet_frames(int first, int last, int count) {
+  const int all = last - first + 1, taken = std::clamp(count, 1, all);
+  std::vector<int> frames;
+  for (int k = 0; k < taken; ++k)
+    frames.push_back(
+        taken == 1 ? first : first + static_cast<int>(std::lround(static_cast<double>(k) * (all - 1) / (taken - 1))));
+  return frames;
+}
+
+std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int columns, Outputs& outputs,
+                       const RunContext& context) {
+  const std::string path = outputs.path("sheet.png");
+  const StageKey key = sheet_key(frames, columns, outputs);
+  if (outputs.is_done(path, key)) return path;
+  const ScopedStage stage(context.times, "sheet");
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<SheetPicture> pictures;
+  for (const int frame : frames) {
+    context.stop_if_cancelled();
+    pictures.push_back({read_png(outputs.frame_path(frame, "png")), fmt::format("frame {}", frame)});
+  }
+  const SheetStyle style{.columns = columns, .title = title_of(shot, pictures.front().picture)};
+  const std::vector<std::uint8_t> bytes = encode_png(contact_sheet(pictures, style));
+  outputs.write(path, key, bytes, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  return path;
+}
+
+bool is_sheet_outdated(const std::vector<int>& frames, int columns, const Outputs& outputs) {
+  return outputs.claimed_state(outputs.path("sheet.png"), sheet_key(frames, columns, outputs)) == OutputState::Stale;
+}
+
+}  // namespace softreel
