@@ -11,6 +11,7 @@
 #include "render/scene/camera.h"
 #include "render/scene/light.h"
 #include "render/scene/material.h"
+#include "render/scene/texture.h"
 
 namespace softreel {
 
@@ -37,6 +38,7 @@ struct MotionMesh {
   std::vector<Time> times;  ///< 1: no motion blur
   Appearance appearance;
   std::optional<EdgeLines> lines;
+  SurfaceColoring coloring;  ///< what varies over the surface
 };
 
 enum class GroundStyle {

@@ -92,7 +92,7 @@ int run_plan(const ShotOptions& options) {
   const Session session(silent);
   const Shot& shot = session.shot();
   const FrameSpan frames = session.frames();
-  const ShotRun run(shot, session.context());
+  ShotRun run(shot, session.context());
   const SceneStage scenes(run);
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
   const PictureStage pictures(scenes, shot, outputs, session.context());

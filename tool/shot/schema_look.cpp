@@ -216,6 +216,7 @@ const Table<RenderSettings>& render_table() {
         .add(
             "auxiliary", [](auto& r) -> auto& { return r.params.auxiliary; }, toggle(), "",
             "Writes albedo, normal and depth into the EXR too.");
+    add_heat_fields(t);
     return t;
   }();
   return table;

@@ -98,7 +98,9 @@ bool PictureStage::recall(int frame, const StageKey& picture) {
 
 Bytes PictureStage::encode_display(const Bytes& half) const {
   const ScopedStage stage(context_.times, "write");
-  return encode_png(to_display(decode_half(half), shot_.output.view, static_cast<float>(shot_.output.exposure)));
+  DisplayImage picture = to_display(decode_half(half), shot_.output.view, static_cast<float>(shot_.output.exposure));
+  scenes_.draw_legend(picture);
+  return encode_png(picture);
 }
 
 bool PictureStage::develop(int frame, const StageKey& picture) {

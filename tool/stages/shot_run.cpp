@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/skinning/skinning.h"
+#include "tool/stages/heat_map.h"
 #include "tool/stages/simulate_key.h"
 #include "tool/stages/stage_names.h"
 
@@ -12,6 +13,7 @@ namespace softreel {
 struct ShotRun::Body {
   LoadedBody loaded;
   std::unique_ptr<BodySimulation> simulation;
+  std::vector<ElementMaterial> materials;  ///< per element; empty until heat needs them
 };
 
 ShotRun::ShotRun(const Shot& shot, const RunContext& context) : shot_(shot), context_(context) {
@@ -46,6 +48,7 @@ StageKey ShotRun::surfaces_key(int frame, const SkinRequest& request) const {
   KeyHasher key("surfaces 1");
   const bool blurred = request.shutter > 0;
   key.add(request.normals).add(request.shutter).add(blurred ? request.segments : 0);
+  if (request.heat != HeatQuantity::None) key.add("heat 1").add(request.heat);
   for (const auto& body : bodies_) {
     key.add(body->loaded.key).add(body->simulation->filled_key()).add(body->simulation->frame_key(frame));
     if (blurred && frame > first_simulated_frame(shot_)) key.add(body->simulation->frame_key(frame - 1));
@@ -79,6 +82,25 @@ SimulationCounts ShotRun::counts(int last) const {
     sum.recoveries.insert(sum.recoveries.end(), counts.recoveries.begin(), counts.recoveries.end());
   }
   return sum;
+}
+
+StageKey ShotRun::all_frames_key() const {
+  KeyHasher key("all frames 1");
+  for (const auto& body : bodies_) {
+    key.add(body->loaded.key).add(body->simulation->filled_key());
+    for (int frame = shot_.settings.first_frame; frame <= shot_.settings.last_frame; ++frame)
+      key.add(body->simulation->frame_key(frame));
+  }
+  return key.key();
+}
+
+std::vector<double> ShotRun::heat(std::size_t index, int frame, HeatQuantity quantity) {
+  Body& body = *bodies_[index];
+  const std::vector<Vec3>& nodes = body.simulation->at(frame).state.positions;
+  const FilledBody& filled = body.simulation->filled();
+  const ScopedStage stage(context_.times, "heat");
+  if (body.materials.empty()) body.materials = element_materials(shot_, settings(index), body.loaded, filled.mesh);
+  return heat_values(quantity, {body.loaded.surface.positions, filled, body.materials, nodes}, context_.threads);
 }
 
 std::vector<Vec3> positions_between(const std::vector<const std::vector<Vec3>*>& steps, double time) {
@@ -122,7 +144,10 @@ SkinnedBody ShotRun::skin_body(std::size_t index, int frame, const SkinRequest& 
 
 std::vector<SkinnedBody> ShotRun::skin(int frame, const SkinRequest& request) {
   std::vector<SkinnedBody> skinned;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) skinned.push_back(skin_body(b, frame, request));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    skinned.push_back(skin_body(b, frame, request));
+    if (request.heat != HeatQuantity::None) skinned.back().heat = heat(b, frame, request.heat);
+  }
   return skinned;
 }
 

@@ -19,7 +19,8 @@ struct SkinnedBody {
     std::vector<Vec3> positions;  ///< as surface.positions, m
     std::vector<Vec3> normals;    ///< empty if not asked for
   };
-  std::vector<Time> times;  ///< times.back() is the frame itself
+  std::vector<Time> times;   ///< times.back() is the frame itself
+  std::vector<double> heat;  ///< per vertex, the quantity asked for, at the frame itself
 };
 
 /// What is wanted of each frame.
@@ -27,6 +28,7 @@ struct SkinRequest {
   bool normals = true;
   double shutter = 0;  ///< share of a frame, ending at the frame
   int segments = 1;    ///< straight pieces while the shutter is open
+  HeatQuantity heat = HeatQuantity::None;
 };
 
 /// Reading keys and loaded bodies is thread-safe; all else belongs to one thread at a time.
@@ -56,6 +58,10 @@ class ShotRun {
   /// The bodies' surfaces at a frame.
   std::vector<SkinnedBody> skin(int frame, const SkinRequest& request);
   SkinnedBody skin_body(std::size_t body, int frame, const SkinRequest& request);
+  /// A quantity at the vertices of a body's surface at a frame.
+  std::vector<double> heat(std::size_t body, int frame, HeatQuantity quantity);
+  /// Everything that this quantity depends on, at the frames of the whole shot.
+  StageKey all_frames_key() const;
   /// Summed over the bodies; of frames up to `last`.
   SimulationCounts counts(int last) const;
 
