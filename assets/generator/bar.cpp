@@ -34,6 +34,15 @@ double quilted_bar(const Vec3& p) {
   return box + depth;
 }
 
+/// Box mapping: each side lies flat in the picture, which is four tiles wide.
+Vec2 box_mapped(const Vec3& p, const Vec3& normal) {
+  const Vec3 n = normal.cwiseAbs();
+  const double picture = 4 * kTile;
+  if (n.x() > n.y() && n.x() > n.z()) return Vec2(std::copysign(1.0, normal.x()) * -p.z(), p.y()) / picture;
+  if (n.y() > n.z()) return Vec2(p.x(), std::copysign(1.0, normal.y()) * -p.z()) / picture;
+  return Vec2(std::copysign(1.0, normal.z()) * p.x(), p.y()) / picture;
+}
+
 }  // namespace
 
 Sculpture make_bar() {
@@ -43,6 +52,7 @@ Sculpture make_bar() {
   s.bounds.add({-0.53, -0.155, -0.155});
   s.bounds.add({0.53, 0.155, 0.155});
   s.cell = 0.0075;
+  s.texture_coordinate = box_mapped;
   s.parts = {{"left", [](const Vec3& p) { return p.x() < -0.44; }},
              {"middle", [](const Vec3& p) { return std::abs(p.x()) < 0.0625; }},
              {"right", [](const Vec3& p) { return p.x() > 0.44; }}};

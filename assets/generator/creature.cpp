@@ -15,6 +15,8 @@ namespace {
 class Creature {
  public:
   double operator()(const Vec3& p) const;
+  /// Paint: sRGB code values.
+  Vec3 color(const Vec3& p) const;
 
   double head(const Vec3& p) const;
   double arms(const Vec3& p) const { return std::min(left_arm(p), right_arm(p)); }
@@ -41,6 +43,9 @@ class Creature {
   double ear(const Vec3& q) const;
   double with_face(double d, const Vec3& q) const;
   double with_eyes(double d, const Vec3& q) const;
+  static Eye eye_shape();
+  static Vec3 eye_color(const Vec3& q);
+  static double horns(const Vec3& q);
 
   Limb leg_{{{{0.150, 0.06, 0.01}, 0.085}, {{0.150, 0.15, 0.0}, 0.090}, {{0.12, 0.27, -0.01}, 0.125}}};
   Limb neck_{{{{0, 0.46, -0.01}, 0.115}, {{0, 0.55, 0.0}, 0.09}, {{0, 0.66, 0.02}, 0.1}}};
@@ -133,7 +138,7 @@ double Creature::with_face(double d, const Vec3& q) const {
   return smooth_difference(d, sphere(m, {0.050, 0.748, 0.278}, 0.013), 0.01);
 }
 
-double Creature::with_eyes(double d, const Vec3& q) const {
+Eye Creature::eye_shape() {
   Eye eye;
   eye.center = kEye;
   eye.radius = kEyeRadius;
@@ -143,12 +148,70 @@ double Creature::with_eyes(double d, const Vec3& q) const {
   eye.lower = 0.060;
   eye.pupil = 0.031;
   eye.ramp = 0.011;
-  return smooth_union(d, eye_ball(mirrored(q), eye), 0.015);
+  return eye;
+}
+
+double Creature::with_eyes(double d, const Vec3& q) const {
+  return smooth_union(d, eye_ball(mirrored(q), eye_shape()), 0.015);
 }
 
 double Creature::head(const Vec3& p) const {
   const Vec3 q = to_head(p);
   return kHeadScale * with_eyes(with_face(smooth_union(skull(q), ear(q), 0.04), q), q);
+}
+
+/// 1 within `edge` of a distance below 0, falling to 0 over `fade`.
+double inside(double distance, double fade) {
+  const double t = std::clamp(0.5 - distance / fade, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+Vec3 mixed(const Vec3& a, const Vec3& b, double share) {
+  return a + share * (b - a);
+}
+
+double Creature::horns(const Vec3& q) {
+  const Vec3 m = mirrored(q);
+  double d = round_cone(m, {{0.085, 0.935, -0.015}, 0.038}, {{0.105, 0.985, -0.035}, 0.040});
+  d = std::min(d, round_cone(q, {{0, 0.925, -0.08}, 0.034}, {{0, 0.955, -0.105}, 0.034}));
+  return std::min(d, round_cone(q, {{0, 0.845, -0.16}, 0.034}, {{0, 0.855, -0.195}, 0.034}));
+}
+
+Vec3 Creature::eye_color(const Vec3& q) {
+  const Eye eye = eye_shape();
+  const Vec3 to = (mirrored(q) - kEye).normalized();
+  const double angle = std::acos(std::clamp(to.dot(eye.look), -1.0, 1.0));
+  const Vec3 white(0.96, 0.95, 0.91), amber(0.93, 0.62, 0.13), black(0.05, 0.05, 0.06);
+  const Vec3 c = mixed(mixed(white, amber, inside(angle - 0.66, 0.05)), black, inside(angle - 0.43, 0.05));
+  const Vec3 side = eye.lid_normal.cross(eye.look).normalized();
+  const Vec3 spark = (eye.radius * eye.look + 0.42 * eye.pupil * (eye.lid_normal - side)).normalized();
+  return mixed(c, white, inside((to - spark).norm() - 0.36 * eye.pupil / eye.radius, 0.04));
+}
+
+Vec3 Creature::color(const Vec3& p) const {
+  const Vec3 q = to_head(p), m = mirrored(q);
+  Vec3 c = mixed(Vec3(0.25, 0.58, 0.47), Vec3(0.46, 0.72, 0.42), std::clamp(0.5 + 2.5 * p.z(), 0.0, 1.0));
+  // Darker spots on the back, their places drawn from a spiral.
+  for (int k = 0; k < 46; ++k) {
+    const double turn = 2.399963 * k, height = 0.12 + 0.021 * k;
+    const Vec3 spot(0.17 * std::sin(turn), height, -0.13 - 0.05 * std::cos(1.7 * turn));
+    c = mixed(c, Vec3(0.16, 0.42, 0.40), 0.8 * inside((p - spot).norm() - 0.030 - 0.008 * std::sin(5.0 * k), 0.012));
+  }
+  const double belly = ellipsoid(p, {0, 0.325, 0.15}, {0.135, 0.175, 0.13});
+  const double throat = ellipsoid(q, {0, 0.665, 0.20}, {0.11, 0.055, 0.12});
+  c = mixed(c, Vec3(0.95, 0.88, 0.66), inside(std::min(belly, throat), 0.035));
+  c = mixed(c, Vec3(0.93, 0.52, 0.43), 0.75 * inside((m - Vec3(0.160, 0.715, 0.160)).norm() - 0.035, 0.05));
+  c = mixed(c, Vec3(0.94, 0.62, 0.52),
+            inside(ellipsoid(m, {0.305, 0.782, 0.047}, {0.1, 0.046, 0.04}, turned(0, 12, -20)), 0.02));
+  const double bright =
+      std::min({horns(q) - 0.006, crest(p) - 0.001 + (p.y() > 0.2 ? 0.0 : 1.0), tail_leaf(p) - 0.002});
+  c = mixed(c, Vec3(0.96, 0.56, 0.22), inside(bright, 0.014));
+  const Vec3 f = mirrored(p);
+  for (int toe = -1; toe <= 1; ++toe) {
+    const Vec3 nail(0.178 + 0.062 * toe, 0.045, 0.206 - 0.018 * std::abs(toe) - 0.010 * toe);
+    c = mixed(c, Vec3(0.97, 0.91, 0.76), inside((f - nail).norm() - 0.024, 0.01));
+  }
+  return mixed(c, eye_color(q), inside(eye(p) - 0.0025, 0.003));
 }
 
 double Creature::operator()(const Vec3& p) const {
@@ -172,6 +235,7 @@ Sculpture make_creature() {
   s.bounds.add({-0.56, -0.04, -0.53});
   s.bounds.add({0.58, 1.13, 0.42});
   s.cell = 0.0112;
+  s.color = [creature](const Vec3& p) { return creature->color(p); };
   s.lenses = {
       {{0.0, 0.80, 0.18}, 0.36, 0.45}, {Creature::eye_center(1), 0.15, 0.45}, {Creature::eye_center(-1), 0.15, 0.45}};
   s.parts = {{"feet", [](const Vec3& p) { return p.y() < 0.05; }},

@@ -1,10 +1,12 @@
-/// make_assets DIRECTORY [NAME...]: writes the meshes that the presets use, all or those named.
+/// make_assets DIRECTORY [NAME...]: writes the meshes and textures that the presets use, all or those named.
 #include <algorithm>
 #include <exception>
+#include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
 
+#include "assets/generator/pictures.h"
 #include "assets/generator/ply_write.h"
 #include "assets/generator/sculpture.h"
 #include "assets/generator/surface_nets.h"
@@ -26,18 +28,41 @@ void make(const Sculpture& sculpture, const std::string& directory, const Thread
             << box.min.z() << " to " << box.max.z() << " m\n";
 }
 
+struct Picture {
+  std::string name;
+  DisplayImage (*make)();
+};
+
+void write(const Picture& picture, const std::string& directory) {
+  const std::string path = directory + "/" + picture.name + ".png";
+  const std::vector<std::uint8_t> bytes = encode_png(picture.make());
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) throw work_error(path + " cannot be written. Give a folder that exists and has room.");
+  std::cout << path << "\n";
+}
+
 int run(const std::vector<std::string>& arguments) {
   const Sculpture all[] = {make_creature(), make_colt(), make_bar(), make_octopus(), make_pudding()};
+  const Picture pictures[] = {{"patchwork", make_patchwork}, {"weave_normals", make_weave_normals}};
+  std::vector<std::string> known;
+  for (const Sculpture& s : all) known.push_back(s.name);
+  for (const Picture& p : pictures) known.push_back(p.name);
   std::string names;
-  for (const Sculpture& s : all) names += " " + s.name;
+  for (const std::string& name : known) names += " " + name;
   if (arguments.empty()) throw input_error("make_assets: no folder is given. Call make_assets DIRECTORY [NAME...].");
   for (std::size_t i = 1; i < arguments.size(); ++i)
-    if (std::none_of(std::begin(all), std::end(all), [&](const Sculpture& s) { return s.name == arguments[i]; }))
-      throw input_error("make_assets: no sculpture is called " + arguments[i] + ". There are:" + names + ".");
+    if (std::find(known.begin(), known.end(), arguments[i]) == known.end())
+      throw input_error("make_assets: nothing is called " + arguments[i] + ". There are:" + names + ".");
+  const auto is_wanted = [&](const std::string& name) {
+    return arguments.size() == 1 || std::find(arguments.begin() + 1, arguments.end(), name) != arguments.end();
+  };
   const Threads threads;
   for (const Sculpture& s : all)
-    if (arguments.size() == 1 || std::find(arguments.begin() + 1, arguments.end(), s.name) != arguments.end())
-      make(s, arguments[0], threads);
+    if (is_wanted(s.name)) make(s, arguments[0], threads);
+  for (const Picture& p : pictures)
+    if (is_wanted(p.name)) write(p, arguments[0]);
   return 0;
 }
 

@@ -30,6 +30,9 @@ struct Sculpture {
   double cell = 0.01;                           ///< m, edge of the sampling lattice
   std::vector<Lens> lenses;                     ///< applied one after the other
   std::vector<Part> parts;
+  std::function<Vec3(const Vec3&)> color;  ///< of the surface at a point, sRGB code values in [0, 1]; empty: none
+  /// Texture coordinates of a corner of a triangle with that normal; empty: none.
+  std::function<Vec2(const Vec3&, const Vec3&)> texture_coordinate;
 };
 
 /// A baby dragon on two big feet, one arm up in greeting: head, neck and tail to pull, ears and arms that follow.

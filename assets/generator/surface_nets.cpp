@@ -9,6 +9,7 @@
 
 #include "assets/generator/lattice.h"
 #include "core/base/error.h"
+#include "core/base/srgb.h"
 
 namespace softreel::sculpt {
 
@@ -245,6 +246,27 @@ void check_closed(const std::string& name, const std::vector<Vec3>& positions, c
                      "; accepted is one piece with 2 (no handles). Look for parts that touch or float.");
 }
 
+/// A coordinate of its own for each corner, so that every triangle lies in one chart.
+void add_texture_coordinates(const Sculpture& sculpture, SurfaceMesh& mesh) {
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.positions[at(t[0])], &b = mesh.positions[at(t[1])], &c = mesh.positions[at(t[2])];
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    Triangle& corners = mesh.triangle_textures.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = static_cast<Index>(mesh.texture_coordinates.size());
+      mesh.texture_coordinates.push_back(sculpture.texture_coordinate(mesh.positions[at(t[k])], normal));
+    }
+  }
+}
+
+void add_colors(const Sculpture& sculpture, SurfaceMesh& mesh) {
+  for (const Vec3& p : mesh.positions) {
+    const Vec3 code = sculpture.color(p);
+    Vec3f& linear = mesh.colors.emplace_back();
+    for (int k = 0; k < 3; ++k) linear[k] = srgb_decode(static_cast<float>(std::clamp(code[k], 0.0, 1.0)));
+  }
+}
+
 }  // namespace
 
 SurfaceMesh mesh_surface(const Sculpture& sculpture, int relaxations, const Threads& threads) {
@@ -259,6 +281,8 @@ SurfaceMesh mesh_surface(const Sculpture& sculpture, int relaxations, const Thre
   mesh.positions = quads.positions;
   mesh.triangles = cut_quads(quads);
   check_closed(sculpture.name, mesh.positions, mesh.triangles);
+  if (sculpture.color) add_colors(sculpture, mesh);
+  if (sculpture.texture_coordinate) add_texture_coordinates(sculpture, mesh);
   for (const Part& part : sculpture.parts) {
     VertexGroup group{part.name, {}};
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)

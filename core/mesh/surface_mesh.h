@@ -31,6 +31,7 @@ struct PolygonList {
 struct SurfaceMesh {
   std::vector<Vec3> positions;            ///< vertices x 3, m after placement, file units before
   std::vector<Vec2> texture_coordinates;  ///< as in the file
+  std::vector<Vec3f> colors;              ///< per vertex, linear RGB; empty if the file has none
   PolygonList polygons;                   ///< as in the file
   std::vector<VertexGroup> groups;
 

@@ -1,5 +1,7 @@
 #include "core/skinning/skinning.h"
 
+#include <algorithm>
+
 #include "core/base/check.h"
 
 namespace softreel {
@@ -112,6 +114,34 @@ std::vector<Vec3> skin_normals(const std::vector<Vec3>& rest_normals, const Embe
     }
   });
   return normals;
+}
+
+std::vector<double> skin_values(const std::vector<double>& element_values, const Embedding& embedding,
+                                const TetMesh& mesh, const Threads& threads) {
+  CHECK(element_values.size() == mesh.tets.size());
+  std::vector<double> sums(mesh.nodes.size(), 0.0), volumes(mesh.nodes.size(), 0.0);
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    const double volume = mesh.fill_of(e) * edges_of(mesh.tets[e], mesh.nodes).determinant();
+    for (const Index node : mesh.tets[e]) {
+      sums[at(node)] += volume * element_values[e];
+      volumes[at(node)] += volume;
+    }
+  }
+  for (std::size_t n = 0; n < sums.size(); ++n)
+    if (volumes[n] > 0) sums[n] /= volumes[n];
+  std::vector<double> values(embedding.elements.size());
+  threads.for_chunks(static_cast<std::int64_t>(values.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const Tet& tet = mesh.tets[at(embedding.elements[i])];
+      std::array<double, 4> nodal{};
+      for (std::size_t k = 0; k < 4; ++k) nodal[k] = sums[at(tet[k])];
+      double value = 0;
+      for (std::size_t k = 0; k < 4; ++k) value += embedding.weights[i][k] * nodal[k];
+      const auto [least, most] = std::minmax_element(nodal.begin(), nodal.end());
+      values[i] = std::clamp(value, *least, *most);
+    }
+  });
+  return values;
 }
 
 }  // namespace softreel

@@ -20,4 +20,9 @@ std::vector<Vec3> skin_positions(const std::vector<Vec3>& rest_points, const Emb
 std::vector<Vec3> skin_normals(const std::vector<Vec3>& rest_normals, const Embedding& embedding, const TetMesh& mesh,
                                const std::vector<Vec3>& node_positions, const Threads& threads);
 
+/// A quantity of the elements at the points: averaged to the nodes by volume of material, then interpolated; where a
+/// point lies outside of its element, not beyond the values of the element's nodes. element_values: as mesh.tets.
+std::vector<double> skin_values(const std::vector<double>& element_values, const Embedding& embedding,
+                                const TetMesh& mesh, const Threads& threads);
+
 }  // namespace softreel

@@ -26,6 +26,7 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_HDR
 #define STBI_ONLY_JPEG
+#define STBI_ONLY_PNG
 #include <stb/stb_image.h>
 
 namespace softreel {
@@ -109,6 +110,18 @@ EnvironmentImage read_hdr(const std::string& path) {
   for (std::size_t k = 0; k < pixel_count(width, height); ++k)
     image.pixels.emplace_back(data[3 * k], data[3 * k + 1], data[3 * k + 2]);
   return image;
+}
+
+/// 16 bits a value, as stored: libpng's simple reader would take them through the file's gamma, which data do not have.
+TexturePicture read_png_16(const std::string& path) {
+  int width = 0, height = 0, components = 0;
+  stbi_us* data = stbi_load_16(path.c_str(), &width, &height, &components, 3);
+  const StbPixels owner(data, &stbi_image_free);
+  if (data == nullptr) throw unreadable(path, stbi_failure_reason(), "a complete PNG picture");
+  TexturePicture picture{width, height, {}, 16};
+  for (std::size_t k = 0; k < pixel_count(width, height); ++k)
+    picture.pixels.push_back(Vec3f(data[3 * k], data[3 * k + 1], data[3 * k + 2]) / 65535);
+  return picture;
 }
 
 DisplayImage read_jpeg(const std::string& path) {
@@ -203,6 +216,31 @@ Image read_exr(const std::string& path) {
   } catch (const std::exception& failure) {
     throw unreadable(path, failure.what(), "a scan-line EXR picture");
   }
+}
+
+TexturePicture read_texture_picture(const std::string& path) {
+  const std::string end = ending(path);
+  const auto of_display = [](const DisplayImage& image) {
+    TexturePicture picture{image.width, image.height, {}, 8};
+    for (std::size_t k = 0; k < image.pixels.size(); k += 3)
+      picture.pixels.push_back(Vec3f(image.pixels[k], image.pixels[k + 1], image.pixels[k + 2]) / 255);
+    return picture;
+  };
+  const auto of_numbers = [](EnvironmentImage image) {
+    return TexturePicture{image.width, image.height, std::move(image.pixels), 32};
+  };
+  if (end == "png") return stbi_is_16_bit(path.c_str()) != 0 ? read_png_16(path) : of_display(read_png(path));
+  if (end == "jpg" || end == "jpeg") return of_display(read_jpeg(path));
+  if (end == "hdr") return of_numbers(read_hdr(path));
+  if (end != "exr")
+    throw unreadable(path, fmt::format("'.{}' names no known format", end),
+                     "files ending in .exr, .hdr, .png, .jpg, .jpeg");
+  Image image = read_exr(path);
+  if (const Channel* grey = image.find("Y"); grey != nullptr && image.find("R") == nullptr) {
+    const std::vector<float> values = grey->pixels;
+    image.channels = {{"R", values}, {"G", values}, {"B", values}};
+  }
+  return of_numbers(from_channels(image, path));
 }
 
 EnvironmentImage read_environment(const std::string& path) {

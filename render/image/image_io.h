@@ -37,6 +37,16 @@ std::vector<std::uint8_t> encode_exr(const Image& image);
 DisplayImage read_png(const std::string& path);
 Image read_exr(const std::string& path);
 
+/// The picture of a texture as its file has it.
+struct TexturePicture {
+  int width = 0, height = 0;
+  std::vector<Vec3f> pixels;  ///< height x width; a grey picture has three equal values
+  int bits = 8;               ///< of a value; 8 and 16: code values in [0, 1]; 32: the file's own numbers
+};
+
+/// From PNG (8 and 16 bits, transparency left out), JPEG, EXR (R, G, B or Y) or HDR. Throws input_error.
+TexturePicture read_texture_picture(const std::string& path);
+
 /// An environment from EXR, HDR, PNG or JPEG (the last two through the inverse sRGB curve). Throws input_error.
 EnvironmentImage read_environment(const std::string& path);
 

@@ -50,15 +50,6 @@ std::uint8_t to_byte(float code) {
 
 }  // namespace
 
-float srgb_encode(float linear) {
-  const float x = linear > 0 ? std::min(linear, 1.0f) : 0.0f;
-  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-}
-
-float srgb_decode(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
 Vec3f apply_view(ViewTransform view, const Vec3f& linear) {
   if (view == ViewTransform::Filmic) return filmic(linear);
   if (view == ViewTransform::AcesFit) return aces_fit(linear);

@@ -1,6 +1,7 @@
 /// From scene-linear radiance to display values.
 #pragma once
 
+#include "core/base/srgb.h"
 #include "core/base/types.h"
 #include "render/image/image_io.h"
 

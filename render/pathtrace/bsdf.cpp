@@ -104,13 +104,42 @@ Vec2f AlbedoTable::at(float cosine) const {
   return (1 - t) * knots_[i] + t * knots_[i + 1];
 }
 
-Bsdf::Bsdf(const Appearance& appearance)
+AlbedoTable AlbedoTable::between(const AlbedoTable& a, const AlbedoTable& b, float share) {
+  AlbedoTable table;
+  for (std::size_t k = 0; k < a.knots_.size(); ++k) table.knots_[k] = a.knots_[k] + share * (b.knots_[k] - a.knots_[k]);
+  table.mean_ = a.mean_ + share * (b.mean_ - a.mean_);
+  return table;
+}
+
+AlbedoTables AlbedoTables::of(const Appearance& appearance) {
+  AlbedoTables tables;
+  const float alpha = appearance.roughness * appearance.roughness;
+  const bool glass = (1 - appearance.metallic) * appearance.transmission > 0;
+  if (glass || appearance.specular > 0 || appearance.metallic > 0)
+    tables.reflection = AlbedoTable::of_reflection(alpha);
+  if (glass) {
+    tables.glass_outside = AlbedoTable::of_glass(alpha, appearance.ior);
+    tables.glass_inside = AlbedoTable::of_glass(alpha, 1 / appearance.ior);
+  }
+  return tables;
+}
+
+AlbedoTables AlbedoTables::between(const AlbedoTables& a, const AlbedoTables& b, float share) {
+  return {AlbedoTable::between(a.reflection, b.reflection, share),
+          AlbedoTable::between(a.glass_outside, b.glass_outside, share),
+          AlbedoTable::between(a.glass_inside, b.glass_inside, share)};
+}
+
+Bsdf::Bsdf(const Appearance& appearance, const AlbedoTables& tables)
     : alpha_(appearance.roughness * appearance.roughness),
       mirror_(alpha_ < kSmoothAlpha),
       ior_(appearance.ior),
       absorption_(appearance.absorption),
       emission_(appearance.emission),
-      albedo_(appearance.base_color) {
+      albedo_(appearance.base_color),
+      ggx_albedo_(tables.reflection),
+      glass_outside_(tables.glass_outside),
+      glass_inside_(tables.glass_inside) {
   const float metal = appearance.metallic;
   glass_ = (1 - metal) * appearance.transmission;
   const float base = (1 - metal) * (1 - appearance.transmission);
@@ -120,11 +149,6 @@ Bsdf::Bsdf(const Appearance& appearance)
   f90_ = Vec3f::Constant(metal + (coated ? base : 0.0f));
   diffuse_ = base * appearance.base_color;
   lambertian_ = !coated && metal == 0 && glass_ == 0;
-  if (!lambertian_) ggx_albedo_ = AlbedoTable::of_reflection(alpha_);
-  if (glass_ > 0) {
-    glass_outside_ = AlbedoTable::of_glass(alpha_, ior_);
-    glass_inside_ = AlbedoTable::of_glass(alpha_, 1 / ior_);
-  }
   const Vec2f mean = ggx_albedo_.mean();
   if (coated) coat_scale_ = 1 / (1 - (coat_f0_ * mean.x() + mean.y()));
   if (metal > 0) {

@@ -28,6 +28,8 @@ class AlbedoTable {
   Vec2f at(float cosine) const;
   /// Mean, weighted by 2 mu.
   Vec2f mean() const { return mean_; }
+  /// share: 0 gives a, bit for bit.
+  static AlbedoTable between(const AlbedoTable& a, const AlbedoTable& b, float share);
 
  private:
   template <typename At>
@@ -36,6 +38,16 @@ class AlbedoTable {
   static constexpr int kIntervals = 32;
   std::array<Vec2f, kIntervals + 1> knots_;  ///< at mu = (k / kIntervals)^2: dense where E bends, at grazing angles
   Vec2f mean_ = Vec2f::Zero();
+};
+
+/// The tables of one appearance: all that is slow to prepare. They depend on roughness and index, not on colours.
+struct AlbedoTables {
+  AlbedoTable reflection;                   ///< filled unless the appearance is only diffuse
+  AlbedoTable glass_outside, glass_inside;  ///< filled for glass
+
+  static AlbedoTables of(const Appearance& appearance);
+  /// Between those of two appearances that differ in roughness only. share: 0 gives a, bit for bit.
+  static AlbedoTables between(const AlbedoTables& a, const AlbedoTables& b, float share);
 };
 
 /// f cos_i and the density of sample() for the same pair.
@@ -56,7 +68,9 @@ struct BsdfSample {
 /// side of +z. `inside`: +z is the inside of the glass.
 class Bsdf {
  public:
-  explicit Bsdf(const Appearance& appearance);
+  explicit Bsdf(const Appearance& appearance) : Bsdf(appearance, AlbedoTables::of(appearance)) {}
+  /// Quick; tables: those of an appearance that differs in colours only, or between those of two neighbours.
+  Bsdf(const Appearance& appearance, const AlbedoTables& tables);
 
   BsdfValue evaluate(const Vec3f& o, const Vec3f& i, bool inside) const;
   /// lobe, u: numbers in [0, 1). False if the sample carries nothing.
@@ -95,8 +109,7 @@ class Bsdf {
   float coat_scale_ = 1;                ///< of the diffuse lobe: 1 / (1 - mean coat albedo)
   Vec3f metal_return_ = Vec3f::Zero();  ///< of multiple scattering among facets, with weight
   Vec3f absorption_, emission_, albedo_;
-  AlbedoTable ggx_albedo_;                    ///< filled unless lambertian_
-  AlbedoTable glass_outside_, glass_inside_;  ///< filled for glass
+  AlbedoTable ggx_albedo_, glass_outside_, glass_inside_;
 };
 
 }  // namespace softreel

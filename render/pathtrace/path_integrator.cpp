@@ -15,11 +15,13 @@ enum Dimension : std::size_t { kLightU = 0, kLightV = 1, kBsdfU = 2, kBsdfV = 3,
 
 }  // namespace
 
-const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, const SurfacePoint& point, const Ray& ray) const {
+const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, SurfacePoint& point, const Ray& ray) {
   const auto mesh = static_cast<std::size_t>(hit.mesh);
   // Lines have a width in the picture only: no other ray sees them.
   if (picture_.lines[mesh] && origin_.from_camera && on_edge_line(*picture_.meshes[mesh], hit, ray, picture_.pixel))
     return *picture_.lines[mesh];
+  if (const ColoredSurface* colored = picture_.colored[mesh].get())
+    return colored_.emplace(colored->at(hit, ray, cone_.width_at(hit.distance), scattered_wide_, point));
   const std::vector<Bsdf>& bsdfs = scattered_wide_ ? picture_.blurred : picture_.bsdfs;
   if (picture_.pattern && mesh + 1 == picture_.meshes.size() && picture_.pattern->alternate(point.position))
     return bsdfs.back();
@@ -106,7 +108,7 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     const bool found = picture_.rays->intersect(ray, hit, bounces_ == 0);
     collect(ray, found, hit.distance);
     if (!found) break;
-    const SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
+    SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
     const Bsdf& bsdf = bsdf_at(hit, point, ray);
     if (bounces_ == 0)
       first_hit_ = {bsdf.albedo(), point.shading_normal, hit.distance, point.position,
@@ -123,6 +125,7 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light};
     if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, to_viewer, numbers);
     if (!scatter(bsdf, point, frame, to_viewer, numbers, ray)) break;
+    cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
   }
   return radiance_;
 }

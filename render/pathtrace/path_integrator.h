@@ -5,11 +5,14 @@
 /// Space Regularization for Holistic and Robust Light Transport, 2013.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "render/pathtrace/bsdf.h"
+#include "render/pathtrace/colored_surface.h"
 #include "render/pathtrace/light_set.h"
+#include "render/pathtrace/ray_cone.h"
 #include "render/pathtrace/ray_scene.h"
 #include "render/pathtrace/sampler.h"
 #include "render/pathtrace/surface_point.h"
@@ -20,13 +23,15 @@ namespace softreel {
 /// A scene made ready for paths. Borrows the scene's meshes and `rays`.
 struct Picture {
   const RayScene* rays = nullptr;
-  std::vector<const MotionMesh*> meshes;   ///< in the order of `rays`
-  std::vector<Bsdf> bsdfs;                 ///< per mesh; last, if there is a pattern: its second tone
-  std::vector<Bsdf> blurred;               ///< the same, as seen by way of a wide scattering
-  std::vector<std::optional<Bsdf>> lines;  ///< per mesh, of its EdgeLines
-  float pixel = 0;                         ///< m, edge of a pixel of the window one metre ahead of the camera
-  std::optional<GroundPattern> pattern;    ///< on the last mesh
+  std::vector<const MotionMesh*> meshes;                 ///< in the order of `rays`
+  std::vector<Bsdf> bsdfs;                               ///< per mesh; last, if there is a pattern: its second tone
+  std::vector<Bsdf> blurred;                             ///< the same, as seen by way of a wide scattering
+  std::vector<std::optional<Bsdf>> lines;                ///< per mesh, of its EdgeLines
+  std::vector<std::unique_ptr<ColoredSurface>> colored;  ///< per mesh; null for one whose look is the same everywhere
+  float pixel = 0;                       ///< m, edge of a pixel of the window one metre ahead of the camera
+  std::optional<GroundPattern> pattern;  ///< on the last mesh
   const LightSet* lights = nullptr;
+  int samples = 1;  ///< paths a pixel
   int max_bounces = 8;
   float clamp = 0;
 };
@@ -45,14 +50,14 @@ struct FirstHit {
 class PathIntegrator {
  public:
   PathIntegrator(const Picture& picture, const Sampler& sampler, std::uint32_t sample)
-      : picture_(picture), sampler_(sampler), sample_(sample) {}
+      : picture_(picture), sampler_(sampler), sample_(sample), cone_{0, picture.pixel * cone_share(picture.samples)} {}
 
   /// Radiance arriving at the start of a camera ray.
   Vec3f trace(const Ray& camera_ray);
   const FirstHit& first_hit() const { return first_hit_; }
 
  private:
-  const Bsdf& bsdf_at(const RayHit& hit, const SurfacePoint& point, const Ray& ray) const;
+  const Bsdf& bsdf_at(const RayHit& hit, SurfacePoint& point, const Ray& ray);
   /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
   void collect(const Ray& ray, bool hit, float distance);
   void add(const Vec3f& radiance);
@@ -76,6 +81,8 @@ class PathIntegrator {
   bool scattered_wide_ = false;
   RayOrigin origin_;
   FirstHit first_hit_;
+  RayCone cone_;
+  std::optional<Bsdf> colored_;  ///< of the last hit, if its mesh has a coloring
 };
 
 }  // namespace softreel

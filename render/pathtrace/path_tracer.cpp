@@ -134,11 +134,14 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
   Picture picture;
   picture.max_bounces = params.max_bounces;
   picture.clamp = params.clamp;
+  picture.samples = params.samples;
   for (const MotionMesh& mesh : scene.meshes) picture.meshes.push_back(&mesh);
   if (scene.ground) picture.meshes.push_back(&ground);
   for (const MotionMesh* mesh : picture.meshes) {
     add_bsdfs(picture, mesh->appearance, params.caustic_roughness);
     picture.lines.push_back(line_bsdf(*mesh));
+    picture.colored.push_back(
+        mesh->coloring.empty() ? nullptr : std::make_unique<ColoredSurface>(*mesh, params.caustic_roughness));
   }
   picture.pixel =
       2 * camera_frame(scene.camera, params.width, params.height).half_width / static_cast<float>(params.width);

@@ -16,19 +16,6 @@ void blend(Corners& a, const Corners& b, float t) {
   for (std::size_t k = 0; k < 3; ++k) a[k] += t * (b[k] - a[k]);
 }
 
-/// The step of the mesh's motion that a ray falls into, and how far through it.
-struct Moment {
-  std::size_t step;
-  float share;
-};
-
-Moment moment_of(const MotionMesh& mesh, const Ray& ray) {
-  const std::size_t last = mesh.times.size() - 1;
-  const float at = ray.time * static_cast<float>(last);
-  const std::size_t step = last == 0 ? 0 : std::min(static_cast<std::size_t>(at), last - 1);
-  return {step, at - static_cast<float>(step)};
-}
-
 /// Turns a normal that faces away from the viewer (at silhouettes of coarse meshes) just enough to be seen edge-on.
 Vec3f facing_normal(const Vec3f& normal, const Vec3f& to_viewer) {
   constexpr float kGrazing = 0.01f;
@@ -48,6 +35,13 @@ Vec3f bulge(const Corners& p, const Corners& n, const std::array<float, 3>& weig
 }
 
 }  // namespace
+
+MeshMoment moment_of(const MotionMesh& mesh, const Ray& ray) {
+  const std::size_t last = mesh.times.size() - 1;
+  const float at = ray.time * static_cast<float>(last);
+  const std::size_t step = last == 0 ? 0 : std::min(static_cast<std::size_t>(at), last - 1);
+  return {step, at - static_cast<float>(step)};
+}
 
 Corners hit_corners(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) {
   const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(hit.triangle)];

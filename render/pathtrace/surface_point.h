@@ -10,6 +10,13 @@ namespace softreel {
 /// Positions or normals of the corners of a triangle.
 using Corners = std::array<Vec3f, 3>;
 
+/// The step of a mesh's motion that a time falls into, and how far through it.
+struct MeshMoment {
+  std::size_t step = 0;  ///< between times[step] and times[step + 1]
+  float share = 0;
+};
+MeshMoment moment_of(const MotionMesh& mesh, const Ray& ray);
+
 /// Where the corners of the triangle that `ray` hit are at the ray's time.
 Corners hit_corners(const MotionMesh& mesh, const RayHit& hit, const Ray& ray);
 

@@ -11,6 +11,7 @@
 #include "render/scene/camera.h"
 #include "render/scene/light.h"
 #include "render/scene/material.h"
+#include "render/scene/texture.h"
 
 namespace softreel {
 
@@ -40,6 +41,7 @@ struct MotionMesh {
   std::vector<Vec3f> next_positions;  ///< at the next frame, for the channel of motion; empty: it stands still
   std::vector<float> strain;          ///< per vertex, for the channel of that name; empty: none
   std::optional<EdgeLines> lines;
+  SurfaceColoring coloring;  ///< what varies over the surface
 };
 
 enum class GroundStyle {

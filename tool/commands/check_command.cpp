@@ -14,7 +14,7 @@ int run_check(const ShotOptions& options) {
   Session session(silent);
   ShotRun run(session.shot(), session.context(), DialUse::LookUp);
   SceneStage scenes(run);
-  scenes.load_environment();
+  scenes.load_images();
   RunReport report = session.report("check", run);
   if (options.json) {
     std::printf("%s\n", to_json(report).c_str());

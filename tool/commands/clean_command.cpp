@@ -59,7 +59,7 @@ int run_clean(const CleanOptions& options) {
   if (options.all) {
     removal += empty_cache(cache, dry_run);
   } else {
-    const ShotRun run(shot, session.context(), DialUse::LookUp);
+    ShotRun run(shot, session.context(), DialUse::LookUp);
     Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
     const std::vector<CacheItem> needed = Session::items(run, outputs);
     removal += clean_cache(cache, CacheUse::owner_id(shot.path, shot.output.directory), needed, dry_run);

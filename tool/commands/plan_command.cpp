@@ -93,7 +93,7 @@ int run_plan(const ShotOptions& options) {
   const Session session(silent);
   const Shot& shot = session.shot();
   const FrameSpan frames = session.frames();
-  const ShotRun run(shot, session.context(), DialUse::LookUp);
+  ShotRun run(shot, session.context(), DialUse::LookUp);
   const SceneStage scenes(run);
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
   const PictureStage pictures(scenes, shot, outputs, session.context());

@@ -68,7 +68,7 @@ Session::Session(const ShotOptions& options, Cache::Storing storing)
       context_beside_{threads_beside_, log_, times_, cache_, cancellation()},
       start_(std::chrono::steady_clock::now()) {}
 
-std::vector<CacheItem> Session::items(const ShotRun& run, Outputs& outputs) {
+std::vector<CacheItem> Session::items(ShotRun& run, Outputs& outputs) {
   const ShotSettings& settings = run.shot().settings;
   const SceneStage scenes(run);
   const PictureStage pictures(scenes, run.shot(), outputs, run.context());
@@ -77,7 +77,7 @@ std::vector<CacheItem> Session::items(const ShotRun& run, Outputs& outputs) {
   return items;
 }
 
-CacheUse& Session::prepare(Outputs& outputs, const ShotRun& run) {
+CacheUse& Session::prepare(Outputs& outputs, ShotRun& run) {
   require_writable(outputs.folder());
   sweep_temporaries(outputs.folder());
   outputs.set_settings(snapshot(run));

@@ -56,9 +56,9 @@ class Session {
   /// Before files are made: throws work_error if the folder cannot be written, removes what killed runs left there,
   /// tells the manifest the settings that its files are made with, and the cache what the shot needs, for as long as
   /// the session lives.
-  CacheUse& prepare(Outputs& outputs, const ShotRun& run);
+  CacheUse& prepare(Outputs& outputs, ShotRun& run);
   /// Everything that the cache keeps for the shot, pictures included.
-  static std::vector<CacheItem> items(const ShotRun& run, Outputs& outputs);
+  static std::vector<CacheItem> items(ShotRun& run, Outputs& outputs);
   /// Cuts the cache to its limit if it has grown by much since the last time.
   void keep_within_limit();
   /// Bytes; 0: none.

@@ -210,6 +210,7 @@ const Table<MaterialSettings>& material_table() {
         "Refractive index of the glass.");
     color("absorption", &A::absorption, kNotNegative, "1/m", "How fast the glass takes light in.");
     color("emission", &A::emission, kNotNegative, "W/(m^2 sr)", "Light that the surface gives off.");
+    add_texture_fields(t);
     return t;
   }();
   return table;

@@ -246,7 +246,9 @@ void add_bodies_and_materials(Table<Shot>& table) {
 const std::vector<Alternatives>& alternatives() {
   static const std::vector<Alternatives> all{{"body.*", {"tets", "edge", "error", "tetrahedra"}},
                                              {"body.*", {"fit", "scale"}},
-                                             {"body.*.region[]", {"material", "stiffness"}}};
+                                             {"body.*.region[]", {"material", "stiffness"}},
+                                             {"material.*", {"base_color", "base_color_texture", "vertex_colors"}},
+                                             {"material.*", {"roughness", "roughness_texture"}}};
   return all;
 }
 

@@ -23,6 +23,12 @@ const Table<Ground>& ground_table();
 const Table<RenderSettings>& render_table();
 const Table<OutputSettings>& output_table();
 
+/// Textures and vertex colours of a material; where one of them is given, the one value that it replaces is not
+/// written.
+void add_texture_fields(Table<MaterialSettings>& table);
+/// What is shown as heat.
+void add_heat_fields(Table<RenderSettings>& table);
+
 /// Fields of a table of which at most one may be given; in a later layer one takes the place of the others.
 struct Alternatives {
   std::string table;  ///< "body.*"

@@ -42,10 +42,24 @@ struct ShotSettings {
   bool independent = false;  ///< statics: every frame starts from rest
 };
 
+/// What varies the look of a material over its surface. Paths are resolved; empty: the appearance's value everywhere.
+struct TextureSettings {
+  std::string base_color, roughness, normal, bump;
+  bool vertex_colors = false;  ///< of the mesh file, as base colour
+  TextureWrap wrap = TextureWrap::Repeat;
+  Vec2 scale = Vec2::Ones(), offset = Vec2::Zero();
+  double normal_strength = 1;
+  double bump_height = 0.01;  ///< m
+
+  bool any() const { return !base_color.empty() || !roughness.empty() || !normal.empty() || !bump.empty(); }
+};
+
 /// Physical and visible properties under one name.
 struct MaterialSettings {
   ElementMaterial physics;
   Appearance appearance;
+  TextureSettings textures;
+  Origin origin;  ///< of the table
 };
 
 /// A length, or a share of the diagonal of a body's box.
@@ -146,8 +160,22 @@ struct LightSettings {
   Origin origin;
 };
 
+/// A quantity of the simulation that is shown as colour on all bodies.
+enum class HeatQuantity {
+  None,
+  Strain,       ///< largest principal strain (stretch - 1) by magnitude, 1
+  Stress,       ///< von Mises stress, Pa
+  Displacement  ///< distance from the place at rest, m
+};
+
+struct HeatSettings {
+  HeatQuantity quantity = HeatQuantity::None;
+  std::optional<Vec2> range;  ///< of the colours, in the quantity's unit; none: found from all frames of the shot
+};
+
 struct RenderSettings {
   RenderParams params;
+  HeatSettings heat;
   double shutter = 0;     ///< share of a frame that the shutter is open, ending at the frame; 0: no motion blur
   int blur_segments = 2;  ///< straight pieces of each point's path while the shutter is open
 };

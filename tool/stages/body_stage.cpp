@@ -270,6 +270,22 @@ void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, c
   }
 }
 
+std::vector<ElementMaterial> element_materials(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
+                                               const TetMesh& mesh) {
+  const ElementMaterial base = find_material(shot, body.material).physics;
+  std::vector<ElementMaterial> materials(mesh.tets.size(), base);
+  const std::vector<Vec3> centroids = element_centroids(mesh);
+  for (const RegionSettings& region : body.regions) {
+    const std::vector<bool> inside = contains(region.select, loaded.surface, centroids);
+    for (std::size_t e = 0; e < inside.size(); ++e) {
+      if (!inside[e]) continue;
+      if (region.material) materials[e] = find_material(shot, *region.material).physics;
+      if (region.stiffness) materials[e].youngs_modulus = base.youngs_modulus * *region.stiffness;
+    }
+  }
+  return materials;
+}
+
 BodyModel make_body_model(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
                           const FilledBody& filled, const BodyConstraints& constraints) {
   BodyModel model;
@@ -278,17 +294,7 @@ BodyModel make_body_model(const Shot& shot, const BodySettings& body, const Load
   model.surface_points = loaded.surface.positions;
   model.embedding = filled.embedding;
   model.gravity = shot.gravity;
-  const ElementMaterial base = find_material(shot, body.material).physics;
-  model.materials.assign(filled.mesh.tets.size(), base);
-  const std::vector<Vec3> centroids = element_centroids(filled.mesh);
-  for (const RegionSettings& region : body.regions) {
-    const std::vector<bool> inside = contains(region.select, loaded.surface, centroids);
-    for (std::size_t e = 0; e < inside.size(); ++e) {
-      if (!inside[e]) continue;
-      if (region.material) model.materials[e] = find_material(shot, *region.material).physics;
-      if (region.stiffness) model.materials[e].youngs_modulus = base.youngs_modulus * *region.stiffness;
-    }
-  }
+  model.materials = element_materials(shot, body, loaded, filled.mesh);
   model.pins = constraints.pins;
   model.pulls = constraints.pulls;
   return model;

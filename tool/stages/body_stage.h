@@ -45,6 +45,10 @@ FilledBody fill_body_anew(const BodySettings& body, const LoadedBody& loaded, co
 /// resolve_constraints, for regions.
 void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, const SurfaceMesh& surface);
 
+/// Materials per element: the body's own, and those of its regions.
+std::vector<ElementMaterial> element_materials(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
+                                               const TetMesh& mesh);
+
 /// What the simulator takes: materials per element, pins and pulls on points.
 BodyModel make_body_model(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
                           const FilledBody& filled, const BodyConstraints& constraints);

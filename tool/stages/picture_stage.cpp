@@ -111,6 +111,7 @@ bool PictureStage::recall(int frame, const StageKey& picture) {
 Bytes PictureStage::encode_display(int frame, const Bytes& half) const {
   const ScopedStage stage(context_.times, "write");
   DisplayImage picture = to_display(decode_half(half), shot_.output.view, static_cast<float>(shot_.output.exposure));
+  scenes_.draw_legend(picture);
   if (shot_.output.burn_in) burn_in(picture, frame_words(shot_.settings, frame));
   return encode_png(picture);
 }

@@ -27,8 +27,10 @@ auto at_environment(const Shot& shot, Work work) {
 
 }  // namespace
 
-SceneStage::SceneStage(const ShotRun& run) : run_(run), environment_(run.shot().environment) {
+SceneStage::SceneStage(ShotRun& run) : run_(run), textures_(run.shot()), environment_(run.shot().environment) {
   const Shot& shot = run.shot();
+  if (!shows_heat())
+    for (std::size_t b = 0; b < run.body_count(); ++b) textures_.require_match(run.settings(b), run.loaded(b));
   if (!shot.environment_image.empty())
     environment_checksum_ = at_environment(shot, [&] { return hash_bytes(read_file(shot.environment_image)); });
   for (std::size_t b = 0; b < run.body_count(); ++b) {
@@ -36,6 +38,10 @@ SceneStage::SceneStage(const ShotRun& run) : run_(run), environment_(run.shot().
     rest_bounds_.add(bounds.min);
     rest_bounds_.add(bounds.max);
   }
+  KeyHasher coloring("coloring 1");
+  const StageKey none = coloring.key();
+  add_coloring(coloring);
+  if (const StageKey key = coloring.key(); key != none) coloring_key_ = key;
 }
 
 Camera camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
@@ -75,7 +81,17 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
 }
 
 SkinRequest skin_request(const RenderSettings& settings) {
-  return {true, settings.shutter, settings.blur_segments, settings.params.channels.has(PictureChannel::Motion)};
+  const PictureChannels& channels = settings.params.channels;
+  return {true,
+          settings.shutter,
+          settings.blur_segments,
+          channels.has(PictureChannel::Motion),
+          settings.heat.quantity,
+          channels.has(PictureChannel::Strain)};
+}
+
+SkinRequest still_request(const RenderSettings& settings) {
+  return {true, 0, 1, false, settings.heat.quantity, false};
 }
 
 namespace {
@@ -104,8 +120,9 @@ Camera SceneStage::camera(int frame) const {
   return camera_at(run_.shot().camera, frame, rest_bounds_, static_cast<double>(params.width) / params.height);
 }
 
-void SceneStage::load_environment() {
+void SceneStage::load_images() {
   const Shot& shot = run_.shot();
+  if (!shows_heat()) textures_.load();
   if (!shot.environment_image.empty() && !environment_.image)
     environment_.image = at_environment(shot, [&] {
       auto image = std::make_shared<const EnvironmentImage>(read_environment(shot.environment_image));
@@ -118,7 +135,7 @@ void SceneStage::load_environment() {
 Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
   const Shot& shot = run_.shot();
   CHECK(bodies.size() == run_.body_count());
-  load_environment();
+  load_images();
   Scene scene;
   scene.camera = camera(frame);
   if (shot.render.params.channels.has(PictureChannel::Motion)) scene.next_camera = camera(frame + 1);
@@ -130,14 +147,54 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
     MotionMesh mesh;
     mesh.name = shot.bodies[b].name;
     mesh.triangles = run_.loaded(b).surface.triangles;
-    mesh.appearance = shot.materials.at(shot.bodies[b].material).appearance;
+    mesh.appearance = appearance(b);
     mesh.material = shot.bodies[b].material;
     mesh.next_positions = to_float(bodies[b].next_positions);
+    if (!shows_heat()) mesh.coloring = textures_.coloring(shot.bodies[b], run_.loaded(b));
+    if (!bodies[b].heat.empty()) {
+      const HeatRange range = heat_range();
+      for (const double value : bodies[b].heat) mesh.coloring.heat.push_back(range.place(value));
+    }
+    mesh.strain.assign(bodies[b].strain.begin(), bodies[b].strain.end());
     for (const SkinnedBody::Time& time : bodies[b].times)
       mesh.times.push_back({to_float(time.positions), to_float(time.normals)});
     scene.meshes.push_back(std::move(mesh));
   }
   return scene;
+}
+
+/// Matt where it shows heat, whatever the material is, so that colours can be read.
+Appearance SceneStage::appearance(std::size_t body) const {
+  if (!shows_heat()) return run_.shot().materials.at(run_.settings(body).material).appearance;
+  Appearance matt;
+  matt.roughness = 0.6f;
+  matt.specular = 0.25f;
+  return matt;
+}
+
+void SceneStage::add_coloring(KeyHasher& key) const {
+  const HeatSettings& heat = run_.shot().render.heat;
+  if (heat.quantity == HeatQuantity::None) {
+    for (std::size_t b = 0; b < run_.body_count(); ++b) textures_.add_key(key, run_.settings(b), run_.loaded(b));
+    return;
+  }
+  key.add("heat 1").add(heat.quantity);
+  if (heat.range)
+    key.add(heat.range->x()).add(heat.range->y());
+  else
+    key.add(run_.all_frames_key());
+}
+
+HeatRange SceneStage::heat_range() const {
+  const HeatSettings& heat = run_.shot().render.heat;
+  if (heat.range) return {heat.range->x(), heat.range->y()};
+  const std::lock_guard lock(range_mutex_);
+  if (!found_range_) found_range_ = find_heat_range(run_, heat.quantity);
+  return *found_range_;
+}
+
+void SceneStage::draw_legend(DisplayImage& image) const {
+  if (shows_heat()) draw_heat_legend(heat_legend(run_.shot().render.heat.quantity, heat_range()), image);
 }
 
 /// All but the surfaces.
@@ -150,7 +207,7 @@ void SceneStage::add_look(KeyHasher& key, const Camera& camera) const {
     key.add(e.zenith).add(e.horizon).add(e.nadir);
   else
     key.add(e.rotation);
-  for (std::size_t b = 0; b < run_.body_count(); ++b) add(key, shot.materials.at(run_.settings(b).material).appearance);
+  for (std::size_t b = 0; b < run_.body_count(); ++b) add(key, appearance(b));
   for (const AreaLight& light : shot.area_lights)
     key.add(light.center).add(light.u).add(light.v).add(light.radiance).add(light.visible);
   for (const SunLight& sun : shot.suns) key.add(sun.direction).add(sun.irradiance).add(sun.angular_diameter);
@@ -178,12 +235,14 @@ StageKey SceneStage::trace_key(int frame) const {
   add_look(key, camera(frame));
   add_tracing(key);
   if (run_.shot().render.params.channels.has(PictureChannel::Motion)) add(key, camera(frame + 1));
+  if (!coloring_key_.empty()) key.add(coloring_key_);
   return key.add(run_.surfaces_key(frame, skin_request(run_.shot().render))).key();
 }
 
 StageKey SceneStage::preview_key(int frame) const {
   KeyHasher key("preview 3");
   add_look(key, camera(frame));
+  if (!coloring_key_.empty()) key.add(coloring_key_);
   return key.add(run_.surfaces_key(frame, {true, 0, 1})).key();
 }
 
@@ -192,11 +251,18 @@ StageKey SceneStage::content_key(const Scene& scene) const {
   add_look(key, scene.camera);
   add_tracing(key);
   if (scene.next_camera) add(key, *scene.next_camera);
+  if (shows_heat()) {
+    const HeatRange range = heat_range();
+    key.add("heat 1").add(run_.shot().render.heat.quantity).add(range.low).add(range.high);
+  } else if (!coloring_key_.empty()) {
+    key.add(coloring_key_);
+  }
   for (const MotionMesh& mesh : scene.meshes) {
     key.add(mesh.triangles);
     for (const MotionMesh::Time& time : mesh.times) key.add(time.positions).add(time.normals);
     key.add(mesh.next_positions);
-    for (const float strain : mesh.strain) key.add(strain);
+    for (const float value : mesh.strain) key.add(double{value});
+    for (const float value : mesh.coloring.heat) key.add(double{value});
   }
   return key.key();
 }

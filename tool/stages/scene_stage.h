@@ -1,11 +1,15 @@
 /// From a shot and its bodies' surfaces at one frame to the scene that is rendered or previewed.
 #pragma once
 
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "render/scene/scene.h"
 #include "tool/shot/shot.h"
+#include "tool/stages/heat_map.h"
 #include "tool/stages/key.h"
+#include "tool/stages/material_textures.h"
 #include "tool/stages/shot_run.h"
 
 namespace softreel {
@@ -13,13 +17,13 @@ namespace softreel {
 /// Builds scenes, and their keys without building them. Keys may be asked for by any thread, scenes by one at a time.
 class SceneStage {
  public:
-  /// Finds the framing camera from the bodies at rest; reads the bytes of the environment image, but does not decode
-  /// it before a scene needs it. run is kept by reference.
-  explicit SceneStage(const ShotRun& run);
+  /// Finds the framing camera from the bodies at rest; reads the bytes of the environment image and of the textures,
+  /// but does not decode them before a scene needs it. run is kept by reference. Throws input_error.
+  explicit SceneStage(ShotRun& run);
 
-  /// Decodes the environment image, if there is one that is not decoded yet. Throws input_error.
-  void load_environment();
-  /// The scene of a frame; loads the environment first.
+  /// Decodes the environment image and the textures that are not decoded yet. Throws input_error.
+  void load_images();
+  /// The scene of a frame; loads the images first.
   Scene at(int frame, const std::vector<SkinnedBody>& bodies);
 
   /// Key of the picture of a frame, of what the shot says and what the surfaces depend on: known before they are.
@@ -30,15 +34,28 @@ class SceneStage {
   /// same have the same one.
   StageKey content_key(const Scene& scene) const;
 
+  /// The range of the shot's heat: the given one, or what find_heat_range finds, which the first call may have to
+  /// simulate the whole shot for. Any thread may ask once a scene was made; before, only the one that makes them.
+  HeatRange heat_range() const;
+  /// Draws the legend of the shot's heat on a picture, if the shot shows any.
+  void draw_legend(DisplayImage& image) const;
+
  private:
+  bool shows_heat() const { return run_.shot().render.heat.quantity != HeatQuantity::None; }
+  Appearance appearance(std::size_t body) const;
+  void add_coloring(KeyHasher& key) const;
   void add_look(KeyHasher& key, const Camera& camera) const;
   void add_tracing(KeyHasher& key) const;
   Camera camera(int frame) const;
 
-  const ShotRun& run_;
+  ShotRun& run_;
+  MaterialTextures textures_;
+  mutable std::mutex range_mutex_;
+  mutable std::optional<HeatRange> found_range_;
   Environment environment_;
   StageKey environment_checksum_;  ///< of the image file; empty without one
   Bounds rest_bounds_;
+  StageKey coloring_key_;  ///< empty where every body has one look
 };
 
 /// The camera of a shot at a frame. rest_bounds: of all bodies at rest, for CameraMode::Frame.
@@ -46,5 +63,7 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
 
 /// What a request for skinned surfaces must hold for the shot's motion blur.
 SkinRequest skin_request(const RenderSettings& settings);
+/// The same for one moment, as a preview draws it.
+SkinRequest still_request(const RenderSettings& settings);
 
 }  // namespace softreel

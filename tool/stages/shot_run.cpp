@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/skinning/skinning.h"
+#include "tool/stages/heat_map.h"
 #include "tool/stages/simulate_key.h"
 #include "tool/stages/stage_names.h"
 
@@ -15,6 +16,7 @@ struct ShotRun::Body {
   std::optional<BodyDial> dial;
   Shot resolved;
   std::unique_ptr<BodySimulation> simulation;
+  std::vector<ElementMaterial> materials;  ///< per element; empty until heat needs them
 };
 
 ShotRun::ShotRun(const Shot& shot, const RunContext& context, DialUse dial) : shot_(shot), context_(context) {
@@ -78,6 +80,8 @@ StageKey ShotRun::surfaces_key(int frame, const SkinRequest& request) const {
   KeyHasher key("surfaces 1");
   const bool blurred = request.shutter > 0;
   key.add(request.normals).add(request.shutter).add(blurred ? request.segments : 0);
+  if (request.heat != HeatQuantity::None) key.add("heat 1").add(request.heat);
+  if (request.strain) key.add("strain 1");
   for (const auto& body : bodies_) {
     key.add(body->loaded.key).add(body->simulation->filled_key()).add(body->simulation->frame_key(frame));
     const bool at_end = frame == shot_.settings.last_frame;
@@ -116,6 +120,25 @@ SimulationCounts ShotRun::counts(int last) const {
     sum.recoveries.insert(sum.recoveries.end(), counts.recoveries.begin(), counts.recoveries.end());
   }
   return sum;
+}
+
+StageKey ShotRun::all_frames_key() const {
+  KeyHasher key("all frames 1");
+  for (const auto& body : bodies_) {
+    key.add(body->loaded.key).add(body->simulation->filled_key());
+    for (int frame = shot_.settings.first_frame; frame <= shot_.settings.last_frame; ++frame)
+      key.add(body->simulation->frame_key(frame));
+  }
+  return key.key();
+}
+
+std::vector<double> ShotRun::heat(std::size_t index, int frame, HeatQuantity quantity) {
+  Body& body = *bodies_[index];
+  const std::vector<Vec3>& nodes = body.simulation->at(frame).state.positions;
+  const FilledBody& filled = body.simulation->filled();
+  const ScopedStage stage(context_.times, "heat");
+  if (body.materials.empty()) body.materials = element_materials(shot_, settings(index), body.loaded, filled.mesh);
+  return heat_values(quantity, {body.loaded.surface.positions, filled, body.materials, nodes}, context_.threads);
 }
 
 std::vector<Vec3> positions_between(const std::vector<const std::vector<Vec3>*>& steps, double time) {
@@ -176,7 +199,11 @@ std::vector<Vec3> ShotRun::next_positions(Body& body, int frame, const std::vect
 
 std::vector<SkinnedBody> ShotRun::skin(int frame, const SkinRequest& request) {
   std::vector<SkinnedBody> skinned;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) skinned.push_back(skin_body(b, frame, request));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    skinned.push_back(skin_body(b, frame, request));
+    if (request.heat != HeatQuantity::None) skinned.back().heat = heat(b, frame, request.heat);
+    if (request.strain) skinned.back().strain = heat(b, frame, HeatQuantity::Strain);
+  }
   return skinned;
 }
 

@@ -23,6 +23,8 @@ struct SkinnedBody {
   };
   std::vector<Time> times;           ///< times.back() is the frame itself
   std::vector<Vec3> next_positions;  ///< at the next frame, if asked for
+  std::vector<double> heat;          ///< per vertex, the quantity asked for, at the frame itself
+  std::vector<double> strain;        ///< per vertex, at the frame itself, if asked for
 };
 
 /// What is wanted of each frame.
@@ -33,6 +35,8 @@ struct SkinRequest {
   /// The next frame too; of the shot's last one, where it would be if it went on as from the frame before, or stays if
   /// there is none.
   bool next = false;
+  HeatQuantity heat = HeatQuantity::None;
+  bool strain = false;
 };
 
 /// What becomes of an error dial that was not turned yet.
@@ -74,6 +78,10 @@ class ShotRun {
   /// The bodies' surfaces at a frame.
   std::vector<SkinnedBody> skin(int frame, const SkinRequest& request);
   SkinnedBody skin_body(std::size_t body, int frame, const SkinRequest& request);
+  /// A quantity at the vertices of a body's surface at a frame.
+  std::vector<double> heat(std::size_t body, int frame, HeatQuantity quantity);
+  /// Everything that this quantity depends on, at the frames of the whole shot.
+  StageKey all_frames_key() const;
   /// Summed over the bodies; of frames up to `last`.
   SimulationCounts counts(int last) const;
 

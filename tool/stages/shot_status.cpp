@@ -35,7 +35,7 @@ constexpr const char* kPictures = "pictures";
 constexpr const char* kMovie = "movie";
 
 /// Keys of all results of a shot.
-ResultKeys find_keys(const ShotRun& run, Outputs& outputs) {
+ResultKeys find_keys(ShotRun& run, Outputs& outputs) {
   ResultKeys keys;
   const Shot& shot = run.shot();
   for (std::size_t b = 0; b < run.body_count(); ++b) {
@@ -62,7 +62,7 @@ class StatusFinder {
         quiet_{context.threads, no_log_, context.times, context.cache, context.cancelled} {}
 
   std::vector<StageStatus> find() {
-    const ShotRun run(shot_, quiet_, DialUse::LookUp);
+    ShotRun run(shot_, quiet_, DialUse::LookUp);
     keys_ = find_keys(run, outputs_);
     now_ = snapshot(run);
     for (const auto& [name, key] : keys_) {
@@ -160,7 +160,8 @@ class StatusFinder {
   std::optional<ResultKeys> keys_of(const TomlValue& document) {
     try {
       const Shot shot = parse_shot(shot_.path, document);
-      return find_keys(ShotRun(shot, quiet_, DialUse::LookUp), outputs_);
+      ShotRun run(shot, quiet_, DialUse::LookUp);
+      return find_keys(run, outputs_);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::Interrupt) throw;
       return std::nullopt;  // a mesh that is gone, say

@@ -11,6 +11,7 @@
 
 #include "core/mesh/readers/mesh_source.h"
 #include "core/mesh/readers/text_scanner.h"
+#include "core/mesh/readers/vertex_colors.h"
 
 namespace softreel::detail {
 namespace {
@@ -29,6 +30,7 @@ class SceneMerger {
     }
     if (mesh_.texture_coordinates.empty()) mesh_.polygons.corner_textures.clear();
     if (mesh_.groups.empty()) mesh_.polygons.polygon_groups.clear();
+    if (!mesh_.colors.empty()) pad_colors(mesh_.colors, mesh_.positions.size());
     return std::move(mesh_);
   }
 
@@ -66,6 +68,7 @@ class SceneMerger {
         mesh_.texture_coordinates.emplace_back(double{part.mTextureCoords[0][v].x},
                                                double{part.mTextureCoords[0][v].y});
     }
+    add_colors(part);
     const Index group = add_names(part, node, first_vertex);
     const bool mirrored = transform.Determinant() < 0;
     PolygonList& polygons = mesh_.polygons;
@@ -77,6 +80,17 @@ class SceneMerger {
         polygons.corner_textures.push_back(has_textures ? first_texture + corner : -1);
       }
       if (close_polygon(polygons)) polygons.polygon_groups.push_back(group);  // else a point or a line
+    }
+  }
+
+  /// Colours of a part's vertices, which are the last ones. Those of glTF are linear by its specification.
+  void add_colors(const aiMesh& part) {
+    if (!part.HasVertexColors(0)) return;
+    pad_colors(mesh_.colors, mesh_.positions.size() - part.mNumVertices);
+    const bool linear = path_.ends_with(".gltf") || path_.ends_with(".glb");
+    for (unsigned v = 0; v < part.mNumVertices; ++v) {
+      const aiColor4D& c = part.mColors[0][v];
+      mesh_.colors.push_back(linear ? Vec3f(c.r, c.g, c.b) : displayed_color(double{c.r}, double{c.g}, double{c.b}));
     }
   }
 

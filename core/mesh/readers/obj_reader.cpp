@@ -1,12 +1,14 @@
 #include "core/mesh/readers/obj_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/mesh/readers/text_scanner.h"
+#include "core/mesh/readers/vertex_colors.h"
 
 namespace softreel::detail {
 namespace {
@@ -44,6 +46,7 @@ class ObjReader {
     while (next_statement(line)) read_statement(line);
     close_ranges();
     check_forward_references();
+    if (!mesh_.colors.empty()) pad_colors(mesh_.colors, mesh_.positions.size());
     if (!has_textures_) mesh_.polygons.corner_textures.clear();
     if (mesh_.groups.empty()) mesh_.polygons.polygon_groups.clear();
     collect_groups(mesh_, ranges_);
@@ -76,6 +79,7 @@ class ObjReader {
     const std::string_view keyword = take_word(line);
     if (keyword == "v") {
       mesh_.positions.push_back(read_numbers<3>(line, "vertex"));
+      read_color(line);
     } else if (keyword == "vt") {
       read_texture(line);
     } else if (keyword == "f" || keyword == "fo") {
@@ -90,7 +94,7 @@ class ObjReader {
   }
 
   template <int N>
-  Eigen::Matrix<double, N, 1> read_numbers(std::string_view rest, const char* what) const {
+  Eigen::Matrix<double, N, 1> read_numbers(std::string_view& rest, const char* what) const {
     Eigen::Matrix<double, N, 1> values;
     for (int k = 0; k < N; ++k) {
       const std::string_view word = take_word(rest);
@@ -102,6 +106,15 @@ class ObjReader {
                           "a decimal number such as -0.25 or 1e-3", "Mend the line or export the mesh again");
     }
     return values;
+  }
+
+  /// "v x y z r g b", a widespread extension; one number after z is a weight, and anything else is not for us.
+  void read_color(std::string_view rest) {
+    std::array<double, 3> c{};
+    for (double& value : c)
+      if (!parse_number(take_word(rest), value)) return;
+    pad_colors(mesh_.colors, mesh_.positions.size() - 1);
+    mesh_.colors.push_back(displayed_color(c[0], c[1], c[2]));
   }
 
   void read_texture(std::string_view rest) {

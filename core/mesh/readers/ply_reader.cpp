@@ -4,11 +4,12 @@
 #include <map>
 
 #include "core/mesh/readers/ply_values.h"
+#include "core/mesh/readers/vertex_colors.h"
 
 namespace softreel::detail {
 namespace {
 
-enum class Role { None, X, Y, Z, U, V, Group, Corners, CornerTextures };
+enum class Role { None, X, Y, Z, U, V, Group, Corners, CornerTextures, Red, Green, Blue };
 
 Role role_of_vertex_property(const PlyProperty& property) {
   const std::string& name = property.name;
@@ -18,6 +19,9 @@ Role role_of_vertex_property(const PlyProperty& property) {
   if (name == "z") return Role::Z;
   if (name == "s" || name == "u" || name == "texture_u") return Role::U;
   if (name == "t" || name == "v" || name == "texture_v") return Role::V;
+  if (name == "red" || name == "diffuse_red") return Role::Red;
+  if (name == "green" || name == "diffuse_green") return Role::Green;
+  if (name == "blue" || name == "diffuse_blue") return Role::Blue;
   return name.size() > kPlyGroupPrefix.size() && name.starts_with(kPlyGroupPrefix) ? Role::Group : Role::None;
 }
 
@@ -26,6 +30,12 @@ Role role_of_face_property(const PlyProperty& property) {
   if (!property.is_list) return name == "group" ? Role::Group : Role::None;
   if (name == "vertex_indices" || name == "vertex_index") return Role::Corners;
   return name == "texcoord" ? Role::CornerTextures : Role::None;
+}
+
+/// What a colour of this type has for full: bytes count to 255, floating-point numbers to 1.
+double full_color(PlyType type) {
+  if (type == PlyType::UInt8) return 255;
+  return type == PlyType::UInt16 ? 65535 : 1;
 }
 
 /// Reads the body; Values is one of the classes of ply_values.h.
@@ -77,12 +87,13 @@ class PlyBody {
       throw broken_file(source_, "", "the vertices have no x, y and z", "properties x, y and z of element vertex",
                         "Export the mesh again");
     has_vertex_textures_ = has(Role::U) && has(Role::V);
+    has_colors_ = has(Role::Red) && has(Role::Green) && has(Role::Blue);
     for (std::int64_t row = 0; row < element.count; ++row) read_vertex(element, roles, group_of);
   }
 
   void read_vertex(const PlyElement& element, const std::vector<Role>& roles,
                    const std::vector<std::size_t>& group_of) {
-    std::array<double, 9> row{};
+    std::array<double, 12> row{};
     for (std::size_t p = 0; p < roles.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (property.is_list) {
@@ -90,13 +101,14 @@ class PlyBody {
         continue;
       }
       const double value = values_.next(property.type);
-      row[static_cast<std::size_t>(roles[p])] = value;
+      row[static_cast<std::size_t>(roles[p])] = roles[p] < Role::Red ? value : value / full_color(property.type);
       if (roles[p] == Role::Group && value != 0)
         mesh_.groups[group_of[p]].vertices.push_back(static_cast<Index>(mesh_.positions.size()));
     }
     const auto at = [&](Role role) { return row[static_cast<std::size_t>(role)]; };
     mesh_.positions.emplace_back(at(Role::X), at(Role::Y), at(Role::Z));
     if (has_vertex_textures_) mesh_.texture_coordinates.emplace_back(at(Role::U), at(Role::V));
+    if (has_colors_) mesh_.colors.push_back(displayed_color(at(Role::Red), at(Role::Green), at(Role::Blue)));
   }
 
   void read_faces(const PlyElement& element) {
@@ -249,7 +261,7 @@ class PlyBody {
   const Log& log_;
   Values values_;
   SurfaceMesh mesh_;
-  bool has_vertex_textures_ = false;
+  bool has_vertex_textures_ = false, has_colors_ = false;
   std::vector<double> list_, textures_;
   std::vector<Vec2> face_textures_;
   std::vector<double> face_groups_;  ///< per polygon, -1 for none

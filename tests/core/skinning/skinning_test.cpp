@@ -176,5 +176,33 @@ TEST(SkinNormals, RestIsUnchanged) {
   for (std::size_t i = 0; i < skinned.size(); ++i) EXPECT_NEAR((skinned[i] - ball.normals[i]).norm(), 0, 1e-13);
 }
 
+TEST(SkinValues, OfAnEvenQuantityAreItsValue) {
+  const Ball ball = make_ball();
+  const Embedding embedding = embed_points(ball.points, ball.normals, ball.mesh, Threads(1));
+  for (const double value :
+       skin_values(std::vector<double>(ball.mesh.tets.size(), 0.3), embedding, ball.mesh, Threads(1)))
+    EXPECT_NEAR(value, 0.3, 1e-14);
+}
+
+TEST(SkinValues, FollowAQuantityThatVariesAndStayWithinIt) {
+  const Ball ball = make_ball();
+  const Embedding embedding = embed_points(ball.points, ball.normals, ball.mesh, Threads(1));
+  std::vector<double> values;
+  double least = 1e300, most = -1e300;
+  for (const Tet& tet : ball.mesh.tets) {
+    double x = 0;
+    for (const Index node : tet) x += 0.25 * ball.mesh.nodes[static_cast<std::size_t>(node)].x();
+    values.push_back(x);
+    least = std::min(least, x);
+    most = std::max(most, x);
+  }
+  const std::vector<double> skinned = skin_values(values, embedding, ball.mesh, Threads(1));
+  for (std::size_t i = 0; i < skinned.size(); ++i) {
+    EXPECT_NEAR(skinned[i], ball.points[i].x(), 0.15) << "half an element inside at most";
+    EXPECT_GE(skinned[i], least);
+    EXPECT_LE(skinned[i], most);
+  }
+}
+
 }  // namespace
 }  // namespace softreel

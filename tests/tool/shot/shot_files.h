@@ -181,6 +181,17 @@ emission = [0, 0.01, 0.1]
 
 [material.gel]
 poisson_ratio = 0.49
+base_color_texture = "../textures/skin.png"
+roughness_texture = "../textures/rough.exr"
+normal_texture = "/textures/pores.png"
+normal_strength = 0.7
+bump_texture = "scales.jpg"
+bump_height = -0.002
+texture_scale = [2, 3]
+texture_offset = [0.25, -0.5]
+texture_wrap = "mirror"
+[material.paint]
+vertex_colors = true
 
 [solver]
 rotation = "energy"
@@ -268,6 +279,8 @@ shutter = 0.5
 blur_segments = 4
 auxiliary = true
 channels = ["albedo", "normal", "depth", "position", "motion", "object_id", "material_id", "strain", "samples"]
+heat = "stress"
+heat_range = [-1, 2.5e4]
 
 [output]
 directory = "pictures"

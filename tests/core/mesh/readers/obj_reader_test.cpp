@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/base/srgb.h"
 #include "tests/core/mesh/mesh_files.h"
 
 namespace softreel {
@@ -17,6 +18,15 @@ TEST(ObjReader, KeepsVerticesInFileOrderWithUnusedOnesAndAllBits) {
   EXPECT_EQ(mesh.positions[1], Vec3(0.1, -1e-3, 3));
   EXPECT_EQ(mesh.positions[3], Vec3(0, 1, 0.5));
   EXPECT_EQ(mesh.triangles, std::vector<Triangle>({{1, 2, 3}}));
+}
+
+TEST(ObjReader, ReadsColoursAfterThePlaceAndMakesThemLinear) {
+  const SurfaceMesh mesh = import_text("a.obj", "v 0 0 0\nv 1 0 0 1 0.5 0\nv 0 1 0 0.25\nv 0 0 1\nf 1 2 3\n");
+  ASSERT_EQ(mesh.colors.size(), 4U) << "one for every vertex as soon as one has some";
+  EXPECT_EQ(mesh.colors[0], Vec3f(1, 1, 1));
+  EXPECT_EQ(mesh.colors[1], Vec3f(1, srgb_decode(0.5f), 0));
+  EXPECT_EQ(mesh.colors[2], Vec3f(1, 1, 1)) << "a single number is a weight";
+  EXPECT_TRUE(import_text("b.obj", std::string(kSquare) + "f 1 2 3\n").colors.empty());
 }
 
 TEST(ObjReader, KeepsPolygonsAndTextureCoordinatesPerCorner) {

@@ -151,5 +151,22 @@ TEST(PlyName, IsRestoredFromItsCode) {
   }
 }
 
+TEST(PlyReader, ReadsColoursOfVerticesInBytesAndInFloats) {
+  const auto text = [](const char* type, const char* full) {
+    return std::string(
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n") +
+           "property " + type + " red\nproperty " + type + " green\nproperty " + type +
+           " blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 0\n1 0 0 " + full +
+           " 0 0\n0 1 0 0 0 " + full + "\n3 0 1 2\n";
+  };
+  for (const SurfaceMesh& mesh :
+       {import_text("a.ply", text("uchar", "255")), import_text("b.ply", text("float", "1"))}) {
+    ASSERT_EQ(mesh.colors.size(), 3U);
+    EXPECT_EQ(mesh.colors[0], Vec3f(0, 0, 0));
+    EXPECT_EQ(mesh.colors[1], Vec3f(1, 0, 0));
+    EXPECT_EQ(mesh.colors[2], Vec3f(0, 0, 1));
+  }
+}
+
 }  // namespace
 }  // namespace softreel
