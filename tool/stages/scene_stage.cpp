@@ -81,7 +81,7 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
 }
 
 SkinRequest skin_request(const RenderSettings& settings) {
-  const PictureChannels& channels = settings.params.channels;
+  const ChannelSet& channels = settings.params.channels;
   return {true,
           settings.shutter,
           settings.blur_segments,
