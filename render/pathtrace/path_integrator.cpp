@@ -52,7 +52,7 @@ void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, con
     LightSample light;
     bool point_like = false;
     const bool found = origin_.receiver.every_light
-                           ? lights.sample_light(k, origin_.receiver, u, light, point_like)
+                           ? lights.sample_light(k, origin_.receiver, numbers[kLight], u, light, point_like)
                            : lights.sample(origin_.receiver, numbers[kLight], u, light, point_like);
     if (found) add_light(bsdf, point, frame, to_viewer, light, point_like);
   }
@@ -111,14 +111,15 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     if (bounces_ == 0) first_hit_ = {bsdf.albedo(), point.shading_normal, hit.distance};
     if (point.inside && bsdf.transmits())
       throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());
-    if (!point.inside) add(bsdf.emission());
+    if (!point.inside && bsdf.emission().maxCoeff() > 0)
+      add(picture_.lights->emission_weight(ray, hit, origin_) * bsdf.emission());
     if (bounces_ == picture_.max_bounces) break;
     const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(++bounces_));
     const ShadingFrame frame(point.shading_normal);
     const Vec3f to_viewer = -ray.direction;
     // What the camera sees directly makes most of the noise: few lights are all sampled there.
     const bool every_light = bounces_ == 1 && picture_.lights->count() <= kFewLights;
-    origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light};
+    origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, time_};
     if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, to_viewer, numbers);
     if (!scatter(bsdf, point, frame, to_viewer, numbers, ray)) break;
   }
