@@ -52,6 +52,9 @@ class LightSet {
   Vec3f area_lights_along(const Vec3f& position, const Vec3f& direction, float distance, const RayOrigin& origin) const;
   /// Radiance of suns and environment from a direction, weighed.
   Vec3f surroundings(const Vec3f& direction, const RayOrigin& origin) const;
+  /// Whether the environment is among the lights that can be chosen; a smooth gradient is not.
+  bool samples_environment() const { return environment_.sampled(); }
+  Vec3f environment(const Vec3f& direction) const { return environment_.radiance(direction); }
   /// Weight of the emission of the front of a mesh that a ray hit.
   float emission_weight(const Ray& ray, const RayHit& hit, const RayOrigin& origin) const;
 

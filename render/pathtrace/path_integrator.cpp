@@ -1,6 +1,7 @@
 #include "render/pathtrace/path_integrator.h"
 
 #include "render/pathtrace/edge_lines.h"
+#include "render/pathtrace/shadow_catcher.h"
 
 namespace softreel {
 
@@ -39,8 +40,17 @@ void PathIntegrator::add(const Vec3f& radiance) {
 void PathIntegrator::collect(const Ray& ray, bool hit, float distance) {
   const float reach = hit ? distance : ray.max_distance;
   Vec3f found = picture_.lights->area_lights_along(ray.origin, ray.direction, reach, origin_);
-  if (!hit) found += picture_.lights->surroundings(ray.direction, origin_);
+  const bool shows_surroundings = !picture_.catches_shadows || bounces_ > 0;
+  if (!hit && shows_surroundings) found += picture_.lights->surroundings(ray.direction, origin_);
   add(found);
+}
+
+void PathIntegrator::catch_shadow(const RayHit& hit, const Ray& ray) {
+  const SurfacePoint point = surface_point(*picture_.meshes.back(), hit, ray);
+  const CaughtLight light = caught_light(picture_, point, time_, sampler_.numbers(sample_, 1));
+  first_hit_.caught = true;
+  first_hit_.unshadowed = light.unshadowed;
+  first_hit_.shadowed = light.shadowed;
 }
 
 void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
@@ -106,9 +116,13 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     const bool found = picture_.rays->intersect(ray, hit, bounces_ == 0);
     collect(ray, found, hit.distance);
     if (!found) break;
+    if (bounces_ == 0 && picture_.catches_shadows && hit.mesh + 1 == static_cast<Index>(picture_.meshes.size())) {
+      catch_shadow(hit, ray);
+      break;
+    }
     const SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
     const Bsdf& bsdf = bsdf_at(hit, point, ray);
-    if (bounces_ == 0) first_hit_ = {bsdf.albedo(), point.shading_normal, hit.distance};
+    if (bounces_ == 0) first_hit_ = {bsdf.albedo(), point.shading_normal, hit.distance, 1};
     if (point.inside && bsdf.transmits())
       throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());
     if (!point.inside && bsdf.emission().maxCoeff() > 0)

@@ -26,6 +26,7 @@ struct Picture {
   std::vector<std::optional<Bsdf>> lines;  ///< per mesh, of its EdgeLines
   float pixel = 0;                         ///< m, edge of a pixel of the window one metre ahead of the camera
   std::optional<GroundPattern> pattern;    ///< on the last mesh
+  bool catches_shadows = false;            ///< the last mesh is a shadow catcher
   const LightSet* lights = nullptr;
   int max_bounces = 8;
   float clamp = 0;
@@ -36,6 +37,9 @@ struct FirstHit {
   Vec3f albedo = Vec3f::Zero();
   Vec3f normal = Vec3f::Zero();
   float distance = 0;
+  float coverage = 0;                  ///< 1 where it hit what the camera sees
+  bool caught = false;                 ///< it hit the shadow catcher:
+  float unshadowed = 0, shadowed = 0;  ///< as CaughtLight
 };
 
 /// One path.
@@ -53,6 +57,8 @@ class PathIntegrator {
   /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
   void collect(const Ray& ray, bool hit, float distance);
   void add(const Vec3f& radiance);
+  /// What the camera sees of the shadow catcher: nothing but its alpha.
+  void catch_shadow(const RayHit& hit, const Ray& ray);
   /// Light sampling at a point.
   void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
                   const SampleBlock& numbers);

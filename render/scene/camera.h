@@ -16,4 +16,10 @@ struct Camera {
   float focus_distance = 0;    ///< m along the view axis; 0: at the target
 };
 
+/// How the shutter lets light in over the time it is open: it opens evenly during the first part of it and closes
+/// evenly during the last. 0 and 0: a box, all times alike; 0.5 and 0.5: a triangle.
+struct ShutterCurve {
+  float opening = 0, closing = 0;  ///< shares of the time, 0 or more, at most 1 together
+};
+
 }  // namespace softreel
