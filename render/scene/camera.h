@@ -14,6 +14,8 @@ struct Camera {
   float sensor_width_mm = 36;  ///< across the image
   float f_number = 0;          ///< aperture diameter = focal length / f_number; 0: pinhole, everything sharp
   float focus_distance = 0;    ///< m along the view axis; 0: at the target
+
+  friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 /// How the shutter lets light in over the time it is open: it opens evenly during the first part of it and closes
