@@ -195,7 +195,6 @@ void check_shot(const Place& place, const TomlValue& value, Shot& shot) {
                      (*table.find("region")->array())[i].find("material"));
   }
   if (shot.camera.focal_length_mm.keys.empty()) shot.camera.focal_length_mm.keys = {{0, 50, Ease::Smooth}};
-  resolve_lights(shot);
 }
 
 void add_bodies_and_materials(Table<Shot>& table) {

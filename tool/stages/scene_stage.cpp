@@ -14,6 +14,11 @@ namespace softreel {
 
 namespace {
 
+/// A sky takes the place of the picture.
+bool shows_picture(const Shot& shot) {
+  return !shot.environment_image.empty() && !shot.sky;
+}
+
 /// Runs `work` on the environment image; its errors get the place of the field.
 template <typename Work>
 auto at_environment(const Shot& shot, Work work) {
@@ -27,9 +32,9 @@ auto at_environment(const Shot& shot, Work work) {
 
 }  // namespace
 
-SceneStage::SceneStage(const ShotRun& run) : run_(run), environment_(run.shot().environment) {
+SceneStage::SceneStage(const ShotRun& run) : run_(run) {
   const Shot& shot = run.shot();
-  if (!shot.environment_image.empty())
+  if (shows_picture(shot))
     environment_checksum_ = at_environment(shot, [&] { return hash_bytes(read_file(shot.environment_image)); });
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const Bounds bounds = used_bounds(run.loaded(b).surface);
@@ -74,6 +79,19 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
   return camera;
 }
 
+std::vector<Camera> camera_motion_at(const CameraSettings& settings, const RenderSettings& render, double frame,
+                                     const Bounds& rest_bounds, double aspect) {
+  if (!(render.shutter > 0)) return {};
+  std::vector<Camera> cameras;
+  for (int k = 0; k <= render.blur_segments; ++k) {
+    const double time = render.shutter * (static_cast<double>(k) / render.blur_segments - 1);
+    cameras.push_back(camera_at(settings, frame + time, rest_bounds, aspect));
+  }
+  const bool stands =
+      std::all_of(cameras.begin(), cameras.end(), [&](const Camera& camera) { return camera == cameras.back(); });
+  return stands ? std::vector<Camera>{} : cameras;
+}
+
 SkinRequest skin_request(const RenderSettings& settings) {
   return {true, settings.shutter, settings.blur_segments};
 }
@@ -99,15 +117,34 @@ void add(KeyHasher& key, const Camera& c) {
 
 }  // namespace
 
-Camera SceneStage::camera(int frame) const {
+Camera SceneStage::camera(double frame) const {
   const RenderParams& params = run_.shot().render.params;
   return camera_at(run_.shot().camera, frame, rest_bounds_, static_cast<double>(params.width) / params.height);
 }
 
+std::vector<Camera> SceneStage::camera_motion(int frame) const {
+  const RenderSettings& render = run_.shot().render;
+  return camera_motion_at(run_.shot().camera, render, frame, rest_bounds_,
+                          static_cast<double>(render.params.width) / render.params.height);
+}
+
+SceneStage::Look SceneStage::look(int frame) const {
+  const Shot& shot = run_.shot();
+  Look look{camera(frame),
+            camera_motion(frame),
+            lights_at(shot, frame),
+            environment_at(shot, frame),
+            daylight_at(shot, frame),
+            {}};
+  for (std::size_t b = 0; b < run_.body_count(); ++b)
+    look.appearances.push_back(appearance_at(shot.materials.at(run_.settings(b).material), frame));
+  return look;
+}
+
 void SceneStage::load_environment() {
   const Shot& shot = run_.shot();
-  if (!shot.environment_image.empty() && !environment_.image)
-    environment_.image = at_environment(shot, [&] {
+  if (shows_picture(shot) && !environment_image_)
+    environment_image_ = at_environment(shot, [&] {
       auto image = std::make_shared<const EnvironmentImage>(read_environment(shot.environment_image));
       if (hash_bytes(read_file(shot.environment_image)) != environment_checksum_)
         throw work_error(shot.environment_image + ": changed while the shot was being rendered.\n  Run again.");
@@ -119,17 +156,26 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
   const Shot& shot = run_.shot();
   CHECK(bodies.size() == run_.body_count());
   load_environment();
+  Look look = this->look(frame);
+  if (look.day && drawn_day_ != look.day) {
+    environment_image_ = sky_image(SkyModel(*look.day));
+    drawn_day_ = look.day;
+  }
   Scene scene;
-  scene.camera = camera(frame);
-  scene.area_lights = shot.area_lights;
-  scene.suns = shot.suns;
-  scene.environment = environment_;
+  scene.camera = look.camera;
+  scene.camera_motion = std::move(look.camera_motion);
+  scene.shutter = shot.render.curve;
+  scene.area_lights = std::move(look.lights.lamps);
+  scene.suns = std::move(look.lights.suns);
+  scene.environment = look.environment;
+  scene.environment.image = environment_image_;
+  if (look.day) scene.environment.rotation = 0;  // its sun says how it is turned
   scene.ground = shot.ground;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     MotionMesh mesh;
     mesh.name = shot.bodies[b].name;
     mesh.triangles = run_.loaded(b).surface.triangles;
-    mesh.appearance = shot.materials.at(shot.bodies[b].material).appearance;
+    mesh.appearance = look.appearances[b];
     for (const SkinnedBody::Time& time : bodies[b].times)
       mesh.times.push_back({to_float(time.positions), to_float(time.normals)});
     scene.meshes.push_back(std::move(mesh));
@@ -138,50 +184,64 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
 }
 
 /// All but the surfaces.
-void SceneStage::add_look(KeyHasher& key, const Camera& camera) const {
+void SceneStage::add_look(KeyHasher& key, const Look& look) const {
   const Shot& shot = run_.shot();
-  add(key, camera);
-  const Environment& e = shot.environment;
+  add(key, look.camera);
+  const Environment& e = look.environment;
   key.add(e.strength).add(environment_checksum_);
-  if (environment_checksum_.empty())
+  if (look.day)
+    key.add("sky")
+        .add(look.day->elevation)
+        .add(look.day->azimuth)
+        .add(look.day->turbidity)
+        .add(look.day->ground_albedo);
+  else if (environment_checksum_.empty())
     key.add(e.zenith).add(e.horizon).add(e.nadir);
   else
     key.add(e.rotation);
-  for (std::size_t b = 0; b < run_.body_count(); ++b) add(key, shot.materials.at(run_.settings(b).material).appearance);
-  for (const AreaLight& light : shot.area_lights)
-    key.add(light.center).add(light.u).add(light.v).add(light.radiance).add(light.visible);
-  for (const SunLight& sun : shot.suns) key.add(sun.direction).add(sun.irradiance).add(sun.angular_diameter);
+  for (const Appearance& appearance : look.appearances) add(key, appearance);
+  for (const AreaLight& lamp : look.lights.lamps)
+    key.add(lamp.shape).add(lamp.center).add(lamp.u).add(lamp.v).add(lamp.radiance).add(lamp.visible);
+  for (const SunLight& sun : look.lights.suns) key.add(sun.direction).add(sun.irradiance).add(sun.angular_diameter);
   if (const auto& ground = shot.ground) {
-    key.add(ground->style).add(ground->height).add(ground->size).add(ground->sweep);
+    key.add(ground->style).add(ground->height).add(ground->size).add(ground->sweep).add(ground->shadow_catcher);
     add(key, ground->appearance);
     key.add(ground->checker).add(ground->checker_color);
   }
   key.add(shot.render.params.width).add(shot.render.params.height);
 }
 
-void SceneStage::add_tracing(KeyHasher& key) const {
+void SceneStage::add_tracing(KeyHasher& key, const std::vector<Camera>& camera_motion) const {
   const RenderParams& params = run_.shot().render.params;
   key.add(params.samples).add(params.max_bounces).add(params.clamp);
   key.add(params.caustic_roughness).add(params.auxiliary);
+  key.add(params.noise).add(params.noise > 0 ? params.min_samples : 0).add(params.time_limit);
+  const PixelWindow& window = params.window;
+  key.add(window.left).add(window.top).add(window.right).add(window.bottom);
+  for (const Camera& camera : camera_motion) add(key, camera);
+  const RenderSettings& render = run_.shot().render;
+  if (render.shutter > 0) key.add(render.curve.opening).add(render.curve.closing);
 }
 
 StageKey SceneStage::trace_key(int frame) const {
-  KeyHasher key("trace 2");
-  add_look(key, camera(frame));
-  add_tracing(key);
+  KeyHasher key("trace 3");
+  const Look look = this->look(frame);
+  add_look(key, look);
+  add_tracing(key, look.camera_motion);
   return key.add(run_.surfaces_key(frame, skin_request(run_.shot().render))).key();
 }
 
 StageKey SceneStage::preview_key(int frame) const {
-  KeyHasher key("preview 3");
-  add_look(key, camera(frame));
+  KeyHasher key("preview 4");
+  add_look(key, look(frame));
   return key.add(run_.surfaces_key(frame, {true, 0, 1})).key();
 }
 
-StageKey SceneStage::content_key(const Scene& scene) const {
-  KeyHasher key("picture 2");
-  add_look(key, scene.camera);
-  add_tracing(key);
+StageKey SceneStage::content_key(int frame, const Scene& scene) const {
+  KeyHasher key("picture 3");
+  const Look look = this->look(frame);
+  add_look(key, look);
+  add_tracing(key, look.camera_motion);
   for (const MotionMesh& mesh : scene.meshes) {
     key.add(mesh.triangles);
     for (const MotionMesh::Time& time : mesh.times) key.add(time.positions).add(time.normals);

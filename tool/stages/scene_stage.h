@@ -1,9 +1,12 @@
 /// From a shot and its bodies' surfaces at one frame to the scene that is rendered or previewed.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "render/scene/scene.h"
+#include "tool/shot/keyed_look.h"
 #include "tool/shot/shot.h"
 #include "tool/stages/key.h"
 #include "tool/stages/shot_run.h"
@@ -19,7 +22,7 @@ class SceneStage {
 
   /// Decodes the environment image, if there is one that is not decoded yet. Throws input_error.
   void load_environment();
-  /// The scene of a frame; loads the environment first.
+  /// The scene of a frame; loads the environment first. Keys of lights and materials are at their values.
   Scene at(int frame, const std::vector<SkinnedBody>& bodies);
 
   /// Key of the picture of a frame, of what the shot says and what the surfaces depend on: known before they are.
@@ -28,21 +31,37 @@ class SceneStage {
   StageKey preview_key(int frame) const;
   /// Key of the picture of a scene: everything its pixels depend on, and nothing that led to it. Frames that look the
   /// same have the same one.
-  StageKey content_key(const Scene& scene) const;
+  StageKey content_key(int frame, const Scene& scene) const;
 
  private:
-  void add_look(KeyHasher& key, const Camera& camera) const;
-  void add_tracing(KeyHasher& key) const;
-  Camera camera(int frame) const;
+  /// All of a scene but the surfaces and the picture of the surroundings.
+  struct Look {
+    Camera camera;
+    std::vector<Camera> camera_motion;
+    FrameLights lights;
+    Environment environment;
+    std::optional<Daylight> day;
+    std::vector<Appearance> appearances;  ///< per body
+  };
+  Look look(int frame) const;
+  void add_look(KeyHasher& key, const Look& look) const;
+  void add_tracing(KeyHasher& key, const std::vector<Camera>& camera_motion) const;
+  Camera camera(double frame) const;
+  std::vector<Camera> camera_motion(int frame) const;
 
   const ShotRun& run_;
-  Environment environment_;
-  StageKey environment_checksum_;  ///< of the image file; empty without one
+  std::shared_ptr<const EnvironmentImage> environment_image_;
+  std::optional<Daylight> drawn_day_;  ///< the sky of environment_image_, where the shot has one
+  StageKey environment_checksum_;      ///< of the image file; empty without one
   Bounds rest_bounds_;
 };
 
 /// The camera of a shot at a frame. rest_bounds: of all bodies at rest, for CameraMode::Frame.
 Camera camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
+
+/// The cameras at the times of the shutter that ends at a frame, as Scene::camera_motion: empty if all are alike.
+std::vector<Camera> camera_motion_at(const CameraSettings& settings, const RenderSettings& render, double frame,
+                                     const Bounds& rest_bounds, double aspect);
 
 /// What a request for skinned surfaces must hold for the shot's motion blur.
 SkinRequest skin_request(const RenderSettings& settings);
