@@ -19,6 +19,10 @@ struct Image {
   int width = 0, height = 0;
   std::vector<Channel> channels;
   std::map<std::string, std::string> attributes = {};  ///< texts in the header of an EXR, by name
+  /// Where the first pixel lies in the whole picture, and how large that is (EXR's display window): of a crop, or with
+  /// overscan. 0 x 0: the image is the whole picture.
+  int left = 0, top = 0;
+  int full_width = 0, full_height = 0;
 
   /// The channel of that name, or null.
   const Channel* find(const std::string& name) const;

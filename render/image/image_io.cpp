@@ -72,6 +72,18 @@ Imf::Slice float_slice(const Channel& channel, int width, const Imath::Box2i& wi
   return Imf::Slice::Make(Imf::FLOAT, pixels, window, sizeof(float), sizeof(float) * static_cast<std::size_t>(width));
 }
 
+/// Height x width x 4.
+std::vector<std::uint8_t> interleaved(const DisplayImage& image) {
+  CHECK(image.alpha.size() == pixel_count(image.width, image.height));
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(4 * image.alpha.size());
+  for (std::size_t k = 0; k < image.alpha.size(); ++k) {
+    for (std::size_t c = 0; c < 3; ++c) pixels.push_back(image.pixels[3 * k + c]);
+    pixels.push_back(image.alpha[k]);
+  }
+  return pixels;
+}
+
 std::string ending(const std::string& path) {
   const auto dot = path.rfind('.');
   std::string end = dot == std::string::npos ? "" : path.substr(dot + 1);
@@ -151,10 +163,12 @@ std::vector<std::uint8_t> encode_png(const DisplayImage& image) {
   header.flags = PNG_IMAGE_FLAG_FAST;  // four times as quick, an eighth larger: noise does not compress
   header.width = static_cast<png_uint_32>(image.width);
   header.height = static_cast<png_uint_32>(image.height);
-  header.format = PNG_FORMAT_RGB;
+  const std::vector<std::uint8_t> with_alpha = image.alpha.empty() ? std::vector<std::uint8_t>{} : interleaved(image);
+  header.format = image.alpha.empty() ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+  const std::uint8_t* pixels = image.alpha.empty() ? image.pixels.data() : with_alpha.data();
   std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(header));
   png_alloc_size_t size = bytes.size();
-  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr) == 0)
+  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, pixels, 0, nullptr) == 0)
     throw work_error(fmt::format("Compressing a PNG of {} x {} pixels failed: {}.\n  Free some memory and run again.",
                                  image.width, image.height, header.message));
   bytes.resize(size);
@@ -164,7 +178,10 @@ std::vector<std::uint8_t> encode_png(const DisplayImage& image) {
 std::vector<std::uint8_t> encode_exr(const Image& image) {
   MemoryStream stream;
   try {
-    Imf::Header header(image.width, image.height);
+    const Imath::Box2i window({image.left, image.top}, {image.left + image.width - 1, image.top + image.height - 1});
+    const bool is_whole = image.full_width == 0;
+    const Imath::Box2i full({0, 0}, {image.full_width - 1, image.full_height - 1});
+    Imf::Header header(is_whole ? window : full, window);
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const auto& [name, text] : image.attributes) header.insert(name, Imf::StringAttribute(text));
     Imf::FrameBuffer frame;
@@ -202,6 +219,11 @@ Image read_exr(const std::string& path) {
     Imf::InputFile file(path.c_str());
     const Imath::Box2i window = file.header().dataWindow();
     Image image{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, {}};
+    const Imath::Box2i full = file.header().displayWindow();
+    image.left = window.min.x - full.min.x;
+    image.top = window.min.y - full.min.y;
+    image.full_width = full.max.x - full.min.x + 1;
+    image.full_height = full.max.y - full.min.y + 1;
     const std::size_t pixels = pixel_count(image.width, image.height);
     for (auto c = file.header().channels().begin(); c != file.header().channels().end(); ++c)
       image.channels.push_back({c.name(), std::vector<float>(pixels)});

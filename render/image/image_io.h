@@ -22,10 +22,11 @@ enum class ViewTransform {
 struct DisplayImage {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixels;
+  std::vector<std::uint8_t> alpha = {};  ///< height x width, not premultiplied; empty: opaque
 };
 
 /// Channels R, G, B times 2^exposure, through the view transform, rounded to 8 bits (no dithering: equal frames are
-/// equal bits).
+/// equal bits). A channel A becomes the alpha; the colours are divided by it first.
 DisplayImage to_display(const Image& image, ViewTransform view, float exposure);
 
 /// Bytes of a PNG / EXR file; the caller writes them, so that all files of a run are written in one way. The bytes

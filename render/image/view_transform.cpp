@@ -64,8 +64,16 @@ DisplayImage to_display(const Image& image, ViewTransform view, float exposure) 
   const float scale = std::exp2(exposure);
   DisplayImage out{image.width, image.height, {}};
   out.pixels.resize(3 * r->pixels.size());
+  const Channel* a = image.find("A");
+  if (a != nullptr) out.alpha.resize(r->pixels.size());
   for (std::size_t k = 0; k < r->pixels.size(); ++k) {
-    const Vec3f display = apply_view(view, scale * Vec3f(r->pixels[k], g->pixels[k], b->pixels[k]));
+    Vec3f linear(r->pixels[k], g->pixels[k], b->pixels[k]);
+    if (a != nullptr) {
+      const float alpha = std::clamp(a->pixels[k], 0.0f, 1.0f);
+      out.alpha[k] = static_cast<std::uint8_t>(std::lround(255 * alpha));
+      if (alpha > 0) linear /= alpha;
+    }
+    const Vec3f display = apply_view(view, scale * linear);
     for (int c = 0; c < 3; ++c)
       out.pixels[3 * k + static_cast<std::size_t>(c)] =
           to_byte(view == ViewTransform::Raw ? display[c] : srgb_encode(display[c]));

@@ -8,6 +8,47 @@
 
 namespace softreel {
 
+namespace {
+
+/// More lamps than these are chosen from by a tree: by steps that grow with the logarithm of their number. For few,
+/// one rough irradiance each is the better choice and as quick.
+constexpr std::size_t kFewLamps = 16;
+
+TreeReceiver in_tree(const Receiver& receiver) {
+  return {receiver.position, receiver.normal, receiver.both_sides};
+}
+
+EmitterBounds bounds_of(const AreaLight& light) {
+  EmitterBounds bounds;
+  const bool is_sphere = light.shape == LampShape::Sphere;
+  const Vec3f half =
+      is_sphere ? Vec3f(Vec3f::Constant(light.u.norm())) : Vec3f(light.u.cwiseAbs() + light.v.cwiseAbs());
+  bounds.low = light.center - half;
+  bounds.high = light.center + half;
+  const Vec3f normal = light.u.cross(light.v).normalized();
+  bounds.normals = is_sphere ? DirectionCone{Vec3f(0, 0, 1), kPi} : DirectionCone{normal, 0};
+  const float area = is_sphere                        ? kPi * light.u.squaredNorm()
+                     : light.shape == LampShape::Disk ? kPi * light.u.norm() * light.v.norm()
+                                                      : 4 * light.u.norm() * light.v.norm();
+  bounds.power_by_pi = luminance(light.radiance) * area;
+  return bounds;
+}
+
+std::vector<EmitterBounds> bounds_of_many(const std::vector<AreaLight>& lights) {
+  std::vector<EmitterBounds> bounds;
+  if (lights.size() > kFewLamps)
+    for (const AreaLight& light : lights) bounds.push_back(bounds_of(light));
+  return bounds;
+}
+
+}  // namespace
+
+LightSet::Lamp LightSet::make_lamp(const AreaLight& light) {
+  if (light.shape == LampShape::Disk) return DiskLight(light);
+  if (light.shape == LampShape::Sphere) return SphereLight(light);
+  return RectangleLight(light);
+}
+
 LightSet::Sun LightSet::make_sun(const SunLight& light) {
   const float length = light.direction.norm();
   if (!(length > 0) || !(light.angular_diameter >= 0) || !(light.angular_diameter < kPi))
@@ -28,8 +69,9 @@ LightSet::Sun LightSet::make_sun(const SunLight& light) {
   return sun;
 }
 
-LightSet::LightSet(const Scene& scene) : environment_(scene.environment) {
-  for (const AreaLight& light : scene.area_lights) rectangles_.emplace_back(light);
+LightSet::LightSet(const Scene& scene)
+    : lamp_tree_(bounds_of_many(scene.area_lights)), emitters_(scene.meshes), environment_(scene.environment) {
+  for (const AreaLight& light : scene.area_lights) lamps_.push_back(make_lamp(light));
   for (const SunLight& light : scene.suns) suns_.push_back(make_sun(light));
 }
 
@@ -41,15 +83,21 @@ bool LightSet::sample_sun(const Sun& sun, const Vec2f& u, LightSample& sample) c
   return true;
 }
 
+float LightSet::lamp_importance(const Lamp& lamp, const Receiver& receiver) const {
+  return std::visit(
+      [&](const auto& light) {
+        if (!receiver.both_sides && light.below(receiver.position, receiver.normal)) return 0.0f;
+        return light.importance(receiver.position);
+      },
+      lamp);
+}
+
 float LightSet::importance(std::size_t k, const Receiver& receiver) const {
-  if (k < rectangles_.size()) {
-    const RectangleLight& light = rectangles_[k];
-    if (!receiver.both_sides && light.below(receiver.position, receiver.normal)) return 0;
-    return light.importance(receiver.position);
-  }
-  k -= rectangles_.size();
-  if (k == suns_.size()) return environment_.importance();
-  const Sun& sun = suns_[k];
+  if (k < lamp_places())
+    return lamp_tree_.empty() ? lamp_importance(lamps_[k], receiver) : lamp_tree_.importance(in_tree(receiver));
+  if (k >= environment_place()) return environment_.importance();
+  if (k >= emitter_place()) return emitters_.importance(in_tree(receiver));
+  const Sun& sun = suns_[k - lamp_places()];
   const float cosine = sun.towards.dot(receiver.normal);
   if (receiver.both_sides) return sun.importance;
   // The disk reaches over the horizon by sin(half angle) <= sqrt(2 (1 - cos)).
@@ -65,6 +113,11 @@ float LightSet::probability(std::size_t k, const Receiver& receiver) const {
   return sum > 0 ? importance(k, receiver) / sum : 0.0f;
 }
 
+float LightSet::lamp_probability(std::size_t lamp, const Receiver& receiver) const {
+  if (lamp_tree_.empty()) return probability(lamp, receiver);
+  return probability(0, receiver) * lamp_tree_.probability(in_tree(receiver), static_cast<Index>(lamp));
+}
+
 bool LightSet::sample(const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
                       bool& point_like) const {
   const std::size_t n = count();
@@ -75,38 +128,54 @@ bool LightSet::sample(const Receiver& receiver, float choice, const Vec2f& u, Li
     float sum = 0;
     for (std::size_t k = 0; k < n; ++k) sum += importance(k, receiver);
     if (!(sum > 0)) return false;
-    float below = 0;
+    float below = 0, start = 0;
     const float target = choice * sum;
     for (std::size_t k = 0; k < n; ++k) {
       const float part = importance(k, receiver);
       if (part <= 0) continue;
       chosen = k;
       share = part / sum;
+      start = below;
       below += part;
       if (target < below) break;
     }
+    choice = std::clamp((target - start) / (share * sum), 0.0f, 0x1.fffffep-1f);
   } else if (importance(0, receiver) <= 0) {
     return false;
   }
-  const bool found = sample_from(chosen, receiver, u, sample, point_like);
+  const bool found = sample_from(chosen, receiver, choice, u, sample, point_like);
   sample.pdf *= share;
   return found && sample.pdf > 0;
 }
 
-bool LightSet::sample_light(std::size_t k, const Receiver& receiver, const Vec2f& u, LightSample& sample,
+bool LightSet::sample_light(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
                             bool& point_like) const {
-  return importance(k, receiver) > 0 && sample_from(k, receiver, u, sample, point_like) && sample.pdf > 0;
+  return importance(k, receiver) > 0 && sample_from(k, receiver, choice, u, sample, point_like) && sample.pdf > 0;
 }
 
-bool LightSet::sample_from(std::size_t k, const Receiver& receiver, const Vec2f& u, LightSample& sample,
+bool LightSet::sample_lamps(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u,
+                            LightSample& sample) const {
+  float share = 1;
+  if (!lamp_tree_.empty()) {
+    Index chosen = 0;
+    if (!lamp_tree_.choose(in_tree(receiver), choice, chosen, share)) return false;
+    k = static_cast<std::size_t>(chosen);
+  }
+  const bool found = std::visit([&](const auto& lamp) { return lamp.sample(receiver.position, u, sample); }, lamps_[k]);
+  sample.pdf *= share;
+  return found;
+}
+
+bool LightSet::sample_from(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
                            bool& point_like) const {
   point_like = false;
-  if (k < rectangles_.size()) return rectangles_[k].sample(receiver.position, u, sample);
-  if (k < rectangles_.size() + suns_.size()) {
-    const Sun& sun = suns_[k - rectangles_.size()];
+  if (k < lamp_places()) return sample_lamps(k, receiver, choice, u, sample);
+  if (k < emitter_place()) {
+    const Sun& sun = suns_[k - lamp_places()];
     point_like = sun.pdf == 0;
     return sample_sun(sun, u, sample);
   }
+  if (k < environment_place()) return emitters_.sample(in_tree(receiver), receiver.time, choice, u, sample);
   sample = environment_.sample(u);
   return true;
 }
@@ -114,35 +183,41 @@ bool LightSet::sample_from(std::size_t k, const Receiver& receiver, const Vec2f&
 Vec3f LightSet::area_lights_along(const Vec3f& position, const Vec3f& direction, float distance,
                                   const RayOrigin& origin) const {
   Vec3f sum = Vec3f::Zero();
-  for (std::size_t k = 0; k < rectangles_.size(); ++k) {
-    const RectangleLight& light = rectangles_[k];
+  const auto add = [&](std::size_t k, const auto& light) {
     float at = 0;
-    if (origin.from_camera && !light.visible()) continue;
-    if (!light.intersect(position, direction, distance, at)) continue;
+    if (origin.from_camera && !light.visible()) return;
+    if (!light.intersect(position, direction, distance, at)) return;
     float weight = 1;
     if (!origin.only_way) {
-      const float pdf = probability(k, origin.receiver) * light.pdf(position, direction, at);
+      const float pdf = lamp_probability(k, origin.receiver) * light.pdf(position, direction, at);
       weight = power_heuristic(origin.pdf, pdf);
     }
     sum += weight * light.radiance();
-  }
+  };
+  for (std::size_t k = 0; k < lamps_.size(); ++k) std::visit([&](const auto& light) { add(k, light); }, lamps_[k]);
   return sum;
 }
 
 Vec3f LightSet::surroundings(const Vec3f& direction, const RayOrigin& origin) const {
   Vec3f sum = environment_.radiance(direction);
   if (!origin.only_way && environment_.sampled()) {
-    const float share = probability(count() - 1, origin.receiver);
+    const float share = probability(environment_place(), origin.receiver);
     sum *= power_heuristic(origin.pdf, share * environment_.pdf(direction));
   }
   for (std::size_t k = 0; k < suns_.size(); ++k) {
     const Sun& sun = suns_[k];
     // |d - s|^2 = 2 (1 - cos): exact for small angles, where the cosine itself is rounded to 1.
     if (sun.pdf == 0 || (direction - sun.towards).squaredNorm() > 2 * sun.one_minus_cos) continue;
-    const float pdf = origin.only_way ? 0.0f : probability(rectangles_.size() + k, origin.receiver) * sun.pdf;
+    const float pdf = origin.only_way ? 0.0f : probability(lamp_places() + k, origin.receiver) * sun.pdf;
     sum += (origin.only_way ? 1.0f : power_heuristic(origin.pdf, pdf)) * sun.radiance;
   }
   return sum;
+}
+
+float LightSet::emission_weight(const Ray& ray, const RayHit& hit, const RayOrigin& origin) const {
+  if (origin.only_way || emitters_.empty()) return 1;
+  const float share = probability(emitter_place(), origin.receiver);
+  return power_heuristic(origin.pdf, share * emitters_.pdf(in_tree(origin.receiver), ray, hit));
 }
 
 }  // namespace softreel

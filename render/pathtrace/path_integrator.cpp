@@ -1,6 +1,7 @@
 #include "render/pathtrace/path_integrator.h"
 
 #include "render/pathtrace/edge_lines.h"
+#include "render/pathtrace/shadow_catcher.h"
 
 namespace softreel {
 
@@ -41,8 +42,17 @@ void PathIntegrator::add(const Vec3f& radiance) {
 void PathIntegrator::collect(const Ray& ray, bool hit, float distance) {
   const float reach = hit ? distance : ray.max_distance;
   Vec3f found = picture_.lights->area_lights_along(ray.origin, ray.direction, reach, origin_);
-  if (!hit) found += picture_.lights->surroundings(ray.direction, origin_);
+  const bool shows_surroundings = !picture_.catches_shadows || bounces_ > 0;
+  if (!hit && shows_surroundings) found += picture_.lights->surroundings(ray.direction, origin_);
   add(found);
+}
+
+void PathIntegrator::catch_shadow(const RayHit& hit, const Ray& ray) {
+  const SurfacePoint point = surface_point(*picture_.meshes.back(), hit, ray);
+  const CaughtLight light = caught_light(picture_, point, time_, sampler_.numbers(sample_, 1));
+  first_hit_.caught = true;
+  first_hit_.unshadowed = light.unshadowed;
+  first_hit_.shadowed = light.shadowed;
 }
 
 void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
@@ -54,7 +64,7 @@ void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, con
     LightSample light;
     bool point_like = false;
     const bool found = origin_.receiver.every_light
-                           ? lights.sample_light(k, origin_.receiver, u, light, point_like)
+                           ? lights.sample_light(k, origin_.receiver, numbers[kLight], u, light, point_like)
                            : lights.sample(origin_.receiver, numbers[kLight], u, light, point_like);
     if (found) add_light(bsdf, point, frame, to_viewer, light, point_like);
   }
@@ -108,21 +118,33 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     const bool found = picture_.rays->intersect(ray, hit, bounces_ == 0);
     collect(ray, found, hit.distance);
     if (!found) break;
+    if (bounces_ == 0 && picture_.catches_shadows && hit.mesh + 1 == static_cast<Index>(picture_.meshes.size())) {
+      catch_shadow(hit, ray);
+      break;
+    }
     SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
     const Bsdf& bsdf = bsdf_at(hit, point, ray);
     if (bounces_ == 0)
-      first_hit_ = {bsdf.albedo(), point.shading_normal, hit.distance, point.position,
-                    hit.mesh,      hit.triangle,         hit.u,        hit.v};
+      first_hit_ = {.albedo = bsdf.albedo(),
+                    .normal = point.shading_normal,
+                    .distance = hit.distance,
+                    .position = point.position,
+                    .mesh = hit.mesh,
+                    .triangle = hit.triangle,
+                    .u = hit.u,
+                    .v = hit.v,
+                    .coverage = 1};
     if (point.inside && bsdf.transmits())
       throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());
-    if (!point.inside) add(bsdf.emission());
+    if (!point.inside && bsdf.emission().maxCoeff() > 0)
+      add(picture_.lights->emission_weight(ray, hit, origin_) * bsdf.emission());
     if (bounces_ == picture_.max_bounces) break;
     const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(++bounces_));
     const ShadingFrame frame(point.shading_normal);
     const Vec3f to_viewer = -ray.direction;
     // What the camera sees directly makes most of the noise: few lights are all sampled there.
     const bool every_light = bounces_ == 1 && picture_.lights->count() <= kFewLights;
-    origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light};
+    origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, time_};
     if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, to_viewer, numbers);
     if (!scatter(bsdf, point, frame, to_viewer, numbers, ray)) break;
     cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));

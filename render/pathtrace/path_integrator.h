@@ -30,6 +30,7 @@ struct Picture {
   std::vector<std::unique_ptr<ColoredSurface>> colored;  ///< per mesh; null for one whose look is the same everywhere
   float pixel = 0;                       ///< m, edge of a pixel of the window one metre ahead of the camera
   std::optional<GroundPattern> pattern;  ///< on the last mesh
+  bool catches_shadows = false;          ///< the last mesh is a shadow catcher
   const LightSet* lights = nullptr;
   int samples = 1;  ///< paths a pixel
   int max_bounces = 8;
@@ -42,8 +43,11 @@ struct FirstHit {
   Vec3f normal = Vec3f::Zero();
   float distance = 0;
   Vec3f position = Vec3f::Zero();
-  Index mesh = -1, triangle = -1;  ///< of Picture::meshes; -1: nothing
-  float u = 0, v = 0;              ///< as RayHit
+  Index mesh = -1, triangle = -1;      ///< of Picture::meshes; -1: nothing
+  float u = 0, v = 0;                  ///< as RayHit
+  float coverage = 0;                  ///< 1 where it hit what the camera sees
+  bool caught = false;                 ///< it hit the shadow catcher:
+  float unshadowed = 0, shadowed = 0;  ///< as CaughtLight
 };
 
 /// One path.
@@ -61,6 +65,8 @@ class PathIntegrator {
   /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
   void collect(const Ray& ray, bool hit, float distance);
   void add(const Vec3f& radiance);
+  /// What the camera sees of the shadow catcher: nothing but its alpha.
+  void catch_shadow(const RayHit& hit, const Ray& ray);
   /// Light sampling at a point.
   void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
                   const SampleBlock& numbers);

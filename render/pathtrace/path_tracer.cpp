@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "render/pathtrace/adaptive_sampling.h"
+#include "render/pathtrace/camera_rays.h"
 #include "render/pathtrace/path_integrator.h"
 #include "render/pathtrace/picture_hash.h"
 #include "render/pathtrace/pixel_channels.h"
+#include "render/pathtrace/pixel_sums.h"
 #include "render/scene/camera_frame.h"
 
 namespace softreel {
@@ -35,10 +40,23 @@ void check_meshes(const Scene& scene) {
   }
 }
 
-Image empty_image(const RenderParams& params, const ChannelLayout& channels) {
-  Image image{params.width, params.height, {}};
-  const auto pixels = static_cast<std::size_t>(params.width) * static_cast<std::size_t>(params.height);
+/// What of the picture is computed.
+PixelWindow window_of(const RenderParams& params) {
+  return params.window == PixelWindow{} ? PixelWindow{0, 0, params.width, params.height} : params.window;
+}
+
+Image empty_image(const RenderParams& params, const ChannelLayout& channels, bool catches_shadows) {
+  const PixelWindow window = window_of(params);
+  Image image{window.width(), window.height(), {}};
+  if (params.window != PixelWindow{}) {
+    image.left = window.left;
+    image.top = window.top;
+    image.full_width = params.width;
+    image.full_height = params.height;
+  }
+  const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   for (const char* name : kColorNames) image.channels.push_back({name, std::vector<float>(pixels)});
+  if (catches_shadows) image.channels.push_back({"A", std::vector<float>(pixels)});
   channels.add_planes(image);
   return image;
 }
@@ -52,62 +70,134 @@ class Frame {
         picture_(picture),
         channels_(channels),
         image_(image),
-        camera_(camera_frame(scene.camera, params.width, params.height)),
+        window_(window_of(params)),
+        rays_(scene, params.width, params.height),
         hash_(picture_hash(scene)) {}
 
-  int tiles() const { return tiles_across() * ((params_.height + kTile - 1) / kTile); }
+  int tiles() const { return tiles_across() * ((image_.height + kTile - 1) / kTile); }
 
+  /// All of the picture's samples at once, so that no pixel's sums have to be kept.
   void render_tile(int tile) const {
-    const int x0 = tile % tiles_across() * kTile, y0 = tile / tiles_across() * kTile;
-    for (int y = y0; y < std::min(y0 + kTile, params_.height); ++y)
-      for (int x = x0; x < std::min(x0 + kTile, params_.width); ++x) render_pixel(x, y);
+    for_pixels(tile, [&](int x, int y) {
+      PixelSums sums;
+      std::optional<PixelChannels> gathered;
+      if (channels_.any()) gathered.emplace(channels_);
+      PixelChannels* const wanted = gathered ? &*gathered : nullptr;
+      add_samples(x, y, params_.samples, sums, wanted);
+      store(place(x, y), sums, wanted);
+    });
+  }
+
+  /// One pass: up to `samples` a pixel where `wanted` says so. gathered: per pixel; empty without channels.
+  void render_tile(int tile, int samples, const std::vector<std::uint8_t>& wanted, std::vector<PixelSums>& all,
+                   std::vector<PixelChannels>& gathered) const {
+    for_pixels(tile, [&](int x, int y) {
+      const std::size_t pixel = place(x, y);
+      if (wanted[pixel] != 0) add_samples(x, y, samples, all[pixel], gathered.empty() ? nullptr : &gathered[pixel]);
+    });
+  }
+
+  /// Means over the samples. gathered: of the other channels; null without.
+  void store(std::size_t pixel, const PixelSums& sums, const PixelChannels* gathered) const {
+    std::size_t plane = 0;
+    for (const double value : sums.values)
+      image_.channels[plane++].pixels[pixel] = static_cast<float>(value / sums.samples);
+    if (picture_.catches_shadows) image_.channels[plane++].pixels[pixel] = static_cast<float>(sums.alpha());
+    if (gathered != nullptr) gathered->store(image_, plane, pixel);
   }
 
  private:
-  int tiles_across() const { return (params_.width + kTile - 1) / kTile; }
-
-  void render_pixel(int x, int y) const {
-    const Sampler sampler(hash_, x, y);
-    std::array<double, kColorNames.size()> sums{};
-    PixelChannels gathered(channels_);
-    for (int s = 0; s < params_.samples; ++s) {
-      PathIntegrator path(picture_, sampler, static_cast<std::uint32_t>(s));
-      const Ray ray = camera_ray(sampler, static_cast<std::uint32_t>(s), x, y);
-      const Vec3f radiance = path.trace(ray);
-      for (int c = 0; c < 3; ++c) sums[static_cast<std::size_t>(c)] += static_cast<double>(radiance[c]);
-      if (image_.channels.size() > kColorNames.size()) gathered.add(ray, path.first_hit());
-    }
-    const auto pixel =
-        static_cast<std::size_t>(y) * static_cast<std::size_t>(params_.width) + static_cast<std::size_t>(x);
-    for (std::size_t c = 0; c < kColorNames.size(); ++c)
-      image_.channels[c].pixels[pixel] = static_cast<float>(sums[c] / params_.samples);
-    gathered.store(image_, kColorNames.size(), pixel);
+  int tiles_across() const { return (image_.width + kTile - 1) / kTile; }
+  std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
   }
 
-  Ray camera_ray(const Sampler& sampler, std::uint32_t sample, int x, int y) const {
-    const SampleBlock u = sampler.numbers(sample, 0);
-    const float across = 2 * (static_cast<float>(x) + u[0]) / static_cast<float>(params_.width) - 1;
-    const float up = 1 - 2 * (static_cast<float>(y) + u[1]) / static_cast<float>(params_.height);
-    Ray ray;
-    ray.origin = camera_.position;
-    Vec3f towards = camera_.window_point(across, up);
-    if (camera_.lens_radius > 0) {
-      const Vec2f lens = camera_.lens_radius * concentric_disk(Vec2f(u[2], u[3]));
-      const Vec3f shift = lens.x() * camera_.right + lens.y() * camera_.up;
-      ray.origin += shift;
-      towards = camera_.focus_distance * towards - shift;
+  template <typename Visit>
+  void for_pixels(int tile, const Visit& visit) const {
+    const int x0 = tile % tiles_across() * kTile, y0 = tile / tiles_across() * kTile;
+    for (int y = y0; y < std::min(y0 + kTile, image_.height); ++y)
+      for (int x = x0; x < std::min(x0 + kTile, image_.width); ++x) visit(x, y);
+  }
+
+  /// Samples are keyed by the place in the whole picture: a crop has the bits of the picture that it is cut from.
+  void add_samples(int x, int y, int up_to, PixelSums& sums, PixelChannels* gathered) const {
+    const int at_x = window_.left + x, at_y = window_.top + y;
+    const Sampler sampler(hash_, at_x, at_y);
+    std::array<double, 3> before{};
+    while (sums.samples < up_to) {
+      const auto s = static_cast<std::uint32_t>(sums.samples);
+      if (s % kBatch == 0) before = sums.values;
+      PathIntegrator path(picture_, sampler, s);
+      const Ray ray = rays_.ray(at_x, at_y, sampler.numbers(s, 0));
+      const Vec3f radiance = path.trace(ray);
+      sums.add(radiance, path.first_hit());
+      if (gathered != nullptr) gathered->add(ray, path.first_hit());
+      if (sums.samples % kBatch != 0) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double batch = sums.values[c] - before[c];
+        sums.batch_squares[c] += batch * batch;
+      }
     }
-    ray.direction = towards.normalized();
-    ray.time = u[4];
-    return ray;
   }
 
   const RenderParams& params_;
   const Picture& picture_;
   const ChannelLayout& channels_;
   Image& image_;
-  CameraFrame camera_;
+  PixelWindow window_;
+  CameraRays rays_;
   std::uint64_t hash_;
+};
+
+/// Passes over the picture until it is clean enough, has all its samples, or time is up.
+class Passes {
+ public:
+  Passes(const RenderParams& params, const Frame& frame, const ChannelLayout& channels, const Image& image)
+      : params_(params), frame_(frame), width_(image.width), height_(image.height) {
+    const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    sums_.resize(pixels);
+    if (channels.any()) gathered_.assign(pixels, PixelChannels(channels));
+    wanted_.assign(pixels, 1);
+  }
+
+  /// run_tiles(visit) calls visit(tile) for all tiles of the frame.
+  template <typename RunTiles>
+  void run(const RunTiles& run_tiles) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    int samples = std::min(first_pass(), params_.samples);
+    double before = 0;
+    for (;;) {
+      run_tiles([&](int tile) { frame_.render_tile(tile, samples, wanted_, sums_, gathered_); });
+      const double now = seconds();
+      const int next = samples_after_pass(samples, step(), params_.samples);
+      if (next == samples || !is_noisy()) break;
+      // Half as much again as the last pass: passes grow, and noisy pixels are slow ones.
+      if (params_.time_limit > 0 && now + 1.5 * (now - before) > params_.time_limit) break;
+      before = now;
+      samples = next;
+    }
+    for (std::size_t k = 0; k < sums_.size(); ++k)
+      frame_.store(k, sums_[k], gathered_.empty() ? nullptr : &gathered_[k]);
+  }
+
+ private:
+  int first_pass() const { return params_.noise > 0 ? params_.min_samples : 1; }
+  int step() const { return params_.noise > 0 ? kBatch : 1; }
+  bool is_noisy() {
+    if (!(params_.noise > 0)) return true;
+    wanted_ = noisy_pixels(sums_, width_, height_, static_cast<double>(params_.noise));
+    return std::find(wanted_.begin(), wanted_.end(), 1) != wanted_.end();
+  }
+
+  const RenderParams& params_;
+  const Frame& frame_;
+  int width_, height_;
+  std::vector<PixelSums> sums_;
+  std::vector<PixelChannels> gathered_;  ///< empty without channels
+  std::vector<std::uint8_t> wanted_;
 };
 
 /// The material twice: as it is, and as it is seen by way of a wide scattering.
@@ -137,6 +227,7 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
   picture.samples = params.samples;
   for (const MotionMesh& mesh : scene.meshes) picture.meshes.push_back(&mesh);
   if (scene.ground) picture.meshes.push_back(&ground);
+  picture.catches_shadows = scene.ground && scene.ground->shadow_catcher;
   for (const MotionMesh* mesh : picture.meshes) {
     add_bsdfs(picture, mesh->appearance, params.caustic_roughness);
     picture.lines.push_back(line_bsdf(*mesh));
@@ -172,6 +263,7 @@ ChannelSet RenderParams::all_channels() const {
   if (auxiliary)
     for (const PictureChannel channel : {PictureChannel::Albedo, PictureChannel::Normal, PictureChannel::Depth})
       all.add(channel);
+  if (has_passes()) all.add(PictureChannel::Samples);
   return all;
 }
 
@@ -181,6 +273,12 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   CHECK(params.max_bounces >= 0);
   CHECK(params.clamp >= 0);
   CHECK(params.caustic_roughness >= 0);
+  CHECK(params.noise >= 0);
+  CHECK(params.min_samples >= 2 * kBatch);
+  CHECK(params.min_samples % kBatch == 0);
+  CHECK(params.time_limit >= 0);
+  CHECK(window_of(params).width() > 0);
+  CHECK(window_of(params).height() > 0);
   check_meshes(scene);
   const MotionMesh ground = scene.ground ? ground_mesh(*scene.ground, scene.camera) : MotionMesh{};
   Picture picture = make_picture(scene, params, ground);
@@ -193,13 +291,19 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   }
   const ScopedStage stage(parts_->times, "render/trace");
   const ChannelLayout channels(scene, picture, params.all_channels(), params.width, params.height);
-  Image image = empty_image(params, channels);
+  Image image = empty_image(params, channels, picture.catches_shadows);
   const Frame frame(scene, params, picture, channels, image);
-  parts_->threads.for_chunks(frame.tiles(), 1, [&](std::int64_t begin, std::int64_t) {
-    if (cancelled && cancelled())
-      throw Error(ErrorKind::Interrupt, "Rendering was interrupted; the unfinished picture is dropped.");
-    frame.render_tile(static_cast<int>(begin));
-  });
+  const auto run_tiles = [&](const auto& visit) {
+    parts_->threads.for_chunks(frame.tiles(), 1, [&](std::int64_t begin, std::int64_t) {
+      if (cancelled && cancelled())
+        throw Error(ErrorKind::Interrupt, "Rendering was interrupted; the unfinished picture is dropped.");
+      visit(static_cast<int>(begin));
+    });
+  };
+  if (params.has_passes())
+    Passes(params, frame, channels, image).run(run_tiles);
+  else
+    run_tiles([&](int tile) { frame.render_tile(tile); });
   return image;
 }
 

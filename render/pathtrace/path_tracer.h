@@ -13,9 +13,27 @@
 
 namespace softreel {
 
+/// Part of a picture, or more than it: pixels from left to right and top to bottom, ends excluded.
+struct PixelWindow {
+  int left = 0, top = 0, right = 0, bottom = 0;  ///< all 0: the picture itself
+
+  int width() const { return right - left; }
+  int height() const { return bottom - top; }
+  friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
+};
+
 struct RenderParams {
   int width = 960, height = 540;
-  int samples = 16;     ///< paths a pixel, at most 2^20
+  /// What of the picture is computed, in its pixels; beyond its edges (overscan) the view goes on.
+  PixelWindow window;
+  int samples = 16;  ///< paths a pixel, at most 2^20; with noise or time_limit, the most
+  /// Pixels stop when they are this close to their limit on a screen whose white is 1 (adaptive_sampling.h says how it
+  /// is judged); 0: all get `samples`.
+  float noise = 0;
+  int min_samples = 16;  ///< with noise: paths that every pixel gets; a multiple of 8, at least 16
+  /// s of tracing, after which no further pass over the picture begins; 0: none. Every pixel gets its share of whole
+  /// passes. The one parameter whose picture depends on the machine and its load.
+  double time_limit = 0;
   int max_bounces = 8;  ///< scattering events of a path
   float clamp = 0;      ///< firefly control: largest value an indirect sample may add; 0: off
   /// Surfaces seen by way of a wide scattering are at least this rough: caustics of glass and metal are blurred, where
@@ -24,7 +42,9 @@ struct RenderParams {
   bool auxiliary = false;  ///< albedo, normal and depth channels too
   ChannelSet channels;     ///< more channels
 
-  /// `channels`, and those that `auxiliary` stands for.
+  /// Whether pixels get their samples in passes, so that they may differ in number.
+  bool has_passes() const { return noise > 0 || time_limit > 0; }
+  /// `channels`, and those that `auxiliary` stands for; where there are passes, the number of samples.
   ChannelSet all_channels() const;
 };
 
@@ -37,7 +57,8 @@ class PathTracer {
   PathTracer(const Threads& threads, StageTimes& times);
   ~PathTracer();
 
-  /// Channels R, G, B, then those of params.all_channels() under the names in ChannelLayout::add_planes.
+  /// Channels R, G, B; with a shadow catcher A (then colours are premultiplied); then those of params.all_channels()
+  /// under the names in ChannelLayout::add_planes.
   /// `cancelled` is asked between tiles; if it says yes, an Error of kind Interrupt is thrown.
   Image render(const Scene& scene, const RenderParams& params, const std::function<bool()>& cancelled = {});
 

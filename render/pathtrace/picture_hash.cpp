@@ -43,6 +43,7 @@ void add_camera(Hash& hash, const Camera& camera) {
 std::uint64_t picture_hash(const Scene& scene) {
   Hash hash;
   add_camera(hash, scene.camera);
+  for (const Camera& camera : scene.camera_motion) add_camera(hash, camera);
   for (const MotionMesh& mesh : scene.meshes) {
     hash.add(mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
     for (const MotionMesh::Time& time : mesh.times)

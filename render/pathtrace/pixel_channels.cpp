@@ -51,7 +51,7 @@ ChannelLayout::ChannelLayout(const Scene& scene, const Picture& picture, Channel
 }
 
 void ChannelLayout::add_planes(Image& image) const {
-  const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  const std::size_t pixels = image.channels.front().pixels.size();
   const auto add = [&](PictureChannel channel, std::initializer_list<const char*> names) {
     if (!channels_.has(channel)) return;
     for (const char* name : names) image.channels.push_back({name, std::vector<float>(pixels)});
@@ -89,7 +89,8 @@ Vec2f ChannelLayout::motion(const Ray& camera_ray, const FirstHit& hit, bool& is
 }
 
 void PixelChannels::add(const Ray& camera_ray, const FirstHit& hit) {
-  const ChannelSet& channels = layout_.channels_;
+  const ChannelLayout& layout = layout_;
+  const ChannelSet& channels = layout.channels_;
   const bool found = hit.mesh >= 0;
   ++samples_;
   albedo_.add(hit.albedo);
@@ -98,13 +99,13 @@ void PixelChannels::add(const Ray& camera_ray, const FirstHit& hit) {
   if (found) position_.add(hit.position);
   if (channels.has(PictureChannel::Motion)) {
     bool is_seen = false;
-    const Vec2f motion = layout_.motion(camera_ray, hit, is_seen);
+    const Vec2f motion = layout.motion(camera_ray, hit, is_seen);
     if (is_seen) motion_.add(Vec3f(motion.x(), motion.y(), 0));
   }
   if (!found) return;
   const auto m = static_cast<std::size_t>(hit.mesh);
-  if (channels.has(PictureChannel::Strain) && m < layout_.scene_.meshes.size()) {
-    const MotionMesh& mesh = layout_.scene_.meshes[m];
+  if (channels.has(PictureChannel::Strain) && m < layout.scene_.meshes.size()) {
+    const MotionMesh& mesh = layout.scene_.meshes[m];
     if (!mesh.strain.empty()) {
       const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(hit.triangle)];
       const auto at = [&](std::size_t k) { return mesh.strain[static_cast<std::size_t>(triangle[k])]; };
@@ -112,14 +113,15 @@ void PixelChannels::add(const Ray& camera_ray, const FirstHit& hit) {
     }
   }
   if (!channels.has(PictureChannel::ObjectId) && !channels.has(PictureChannel::MaterialId)) return;
-  hits_.resize(layout_.objects_.size());
+  hits_.resize(layout.objects_.size());
   ++hits_[m];
 }
 
 void PixelChannels::store(Image& image, std::size_t first_plane, std::size_t pixel) const {
+  const ChannelLayout& layout = layout_;
   std::size_t plane = first_plane;
   const auto put = [&](PictureChannel channel, const Vec3f& value, int count) {
-    if (!layout_.channels_.has(channel)) return;
+    if (!layout.channels_.has(channel)) return;
     for (int c = 0; c < count; ++c) image.channels[plane++].pixels[pixel] = value[c];
   };
   put(PictureChannel::Albedo, albedo_.value(), 3);
@@ -130,7 +132,7 @@ void PixelChannels::store(Image& image, std::size_t first_plane, std::size_t pix
   put(PictureChannel::Strain, strain_.value(), 1);
   put(PictureChannel::Samples, Vec3f::Constant(static_cast<float>(samples_)), 1);
   const auto put_ids = [&](PictureChannel channel, const std::vector<float>& ids) {
-    if (!layout_.channels_.has(channel)) return;
+    if (!layout.channels_.has(channel)) return;
     std::vector<IdCoverage> covering;
     for (std::size_t m = 0; m < hits_.size(); ++m) {
       if (hits_[m] == 0) continue;
@@ -145,8 +147,8 @@ void PixelChannels::store(Image& image, std::size_t first_plane, std::size_t pix
     store_cryptomatte(image, plane, pixel, covering);
     plane += 2 * kCryptomatteRanks;
   };
-  put_ids(PictureChannel::ObjectId, layout_.object_ids_);
-  put_ids(PictureChannel::MaterialId, layout_.material_ids_);
+  put_ids(PictureChannel::ObjectId, layout.object_ids_);
+  put_ids(PictureChannel::MaterialId, layout.material_ids_);
 }
 
 }  // namespace softreel

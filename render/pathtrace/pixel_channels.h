@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "render/image/image.h"
@@ -18,7 +19,8 @@ class ChannelLayout {
   /// `picture`: its meshes are those of the scene, then the ground.
   ChannelLayout(const Scene& scene, const Picture& picture, ChannelSet channels, int width, int height);
 
-  /// Appends the planes, all 0:
+  bool any() const { return channels_.bits != 0; }
+  /// Appends the planes, all 0, of the size of the image's first one:
   /// albedo.R/G/B, normal.X/Y/Z (means over all samples, 0 where nothing is hit);
   /// depth.Z, position.X/Y/Z (m; means over the samples that hit something);
   /// motion.X, motion.Y (pixels from this frame to the next, x to the right, y down: where the surface seen here will
@@ -60,7 +62,7 @@ class PixelChannels {
     Vec3f value() const { return count > 0 ? Vec3f((sum / count).cast<float>()) : Vec3f(Vec3f::Zero()); }
   };
 
-  const ChannelLayout& layout_;
+  std::reference_wrapper<const ChannelLayout> layout_;
   int samples_ = 0;
   Mean albedo_, normal_, depth_, position_, motion_, strain_;
   std::vector<int> hits_;  ///< per mesh; empty unless ids are asked for

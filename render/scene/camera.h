@@ -14,6 +14,14 @@ struct Camera {
   float sensor_width_mm = 36;  ///< across the image
   float f_number = 0;          ///< aperture diameter = focal length / f_number; 0: pinhole, everything sharp
   float focus_distance = 0;    ///< m along the view axis; 0: at the target
+
+  friend bool operator==(const Camera&, const Camera&) = default;
+};
+
+/// How the shutter lets light in over the time it is open: it opens evenly during the first part of it and closes
+/// evenly during the last. 0 and 0: a box, all times alike; 0.5 and 0.5: a triangle.
+struct ShutterCurve {
+  float opening = 0, closing = 0;  ///< shares of the time, 0 or more, at most 1 together
 };
 
 }  // namespace softreel

@@ -8,13 +8,20 @@
 
 namespace softreel {
 
-/// A rectangle that emits from the side its `normal = u x v` points to. Like studio lamps in other renderers it adds
-/// its light without hiding what is behind it.
+enum class LampShape {
+  Rectangle,
+  Disk,   ///< or an ellipse
+  Sphere  ///< of radius |u|
+};
+
+/// A lamp. Rectangles and disks emit from the side their `normal = u x v` points to, spheres outwards. Like studio
+/// lamps in other renderers it adds its light without hiding what is behind it.
 struct AreaLight {
   Vec3f center = Vec3f(0, 4, 0);
-  Vec3f u = Vec3f(0.5f, 0, 0), v = Vec3f(0, 0, 0.5f);  ///< half edges, m
+  Vec3f u = Vec3f(0.5f, 0, 0), v = Vec3f(0, 0, 0.5f);  ///< half edges or half axes, perpendicular, m
   Vec3f radiance = Vec3f::Ones();                      ///< W / (m^2 sr)
   bool visible = true;                                 ///< to camera rays
+  LampShape shape = LampShape::Rectangle;
 };
 
 /// A distant disk.

@@ -57,11 +57,17 @@ struct Ground {
   Appearance appearance;
   float checker = 0;  ///< m, edge of the squares of a two-tone pattern; 0: none
   Vec3f checker_color = Vec3f(0.4f, 0.4f, 0.4f);
+  /// The camera sees only the shadow on it, as alpha over nothing, and nothing of the surroundings; to all other rays
+  /// it is there.
+  bool shadow_catcher = false;
 };
 
 struct Scene {
-  Camera camera;
+  Camera camera;                      ///< at the closing of the shutter
   std::optional<Camera> next_camera;  ///< at the next frame, for the channel of motion; none: it stands still
+  /// At equally spaced times of the shutter, the last one as `camera`; empty: it stands still.
+  std::vector<Camera> camera_motion;
+  ShutterCurve shutter;
   std::vector<MotionMesh> meshes;
   std::vector<AreaLight> area_lights;
   std::vector<SunLight> suns;

@@ -1,9 +1,15 @@
 /// Renders the standard scene of ../shared/render_refs (an armadillo, a lamp, a constant sky), to be compared with its
 /// reference pictures by image_error.py, and prints samples, seconds and paths a second as tab-separated values.
 ///
-///   standard_picture BODY.obj [--close BODY_AT_CLOSE.obj] [--spp N] [--threads N] [--size W H] [--output F.exr]
+///   standard_picture BODY.obj [--material mix|lambert] [--blur] [--spp N] [--threads N] [--size W H] [--output F.exr]
 ///
-/// BODY.obj is arma0_k0.obj of make_meshes.py there, BODY_AT_CLOSE.obj its key 1 (then with motion blur).
+/// BODY.obj is arma0_k0.obj of make_meshes.py there; --blur reads its key 1 from arma0_k1.obj beside it. --material:
+/// of the body, "lambert" if not given; "mix" is 0.9 Lambert and 0.1 GGX of alpha 0.09 without Fresnel.
+///
+/// Columns: samples a pixel; seconds on the wall of building trees and tracing; paths a second, without the building;
+/// the same of nothing but Embree on the rays of the first sample of each pixel, in their order, by one call a ray;
+/// the share of the two rates, each by cpu seconds, which other programs on the machine disturb less; cpu seconds of
+/// tracing; seconds of building.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -12,16 +18,19 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "core/base/error.h"
 #include "render/image/image_io.h"
 #include "render/pathtrace/path_tracer.h"
+#include "tests/benchmark/recorded_rays.h"
 
 namespace softreel {
 namespace {
 
 struct Options {
   std::string body, close, output;
+  bool mix = false, blur = false;
   int threads = 0;
   RenderParams params;
 };
@@ -62,6 +71,11 @@ MotionMesh read_body(const Options& options) {
   for (MotionMesh::Time& time : mesh.times) time.normals = normals_of(time.positions, mesh.triangles);
   mesh.appearance.base_color = Vec3f(0.8f, 0.3f, 0.15f);
   mesh.appearance.specular = 0;
+  if (options.mix) {
+    mesh.appearance.metallic = 0.1f;
+    mesh.appearance.metal_color = Vec3f::Ones();  // Schlick's Fresnel is 1 at every angle
+    mesh.appearance.roughness = 0.3f;             // alpha is its square
+  }
   return mesh;
 }
 
@@ -107,8 +121,12 @@ Options parse(int argc, char** argv) {
       if (k + 1 >= argc) throw input_error(option + " lacks its value.");
       return argv[++k];
     };
-    if (option == "--close")
-      options.close = next();
+    if (option == "--material") {
+      const std::string material = next();
+      if (material != "mix" && material != "lambert") throw input_error("--material takes mix or lambert.");
+      options.mix = material == "mix";
+    } else if (option == "--blur")
+      options.blur = true;
     else if (option == "--spp")
       options.params.samples = std::stoi(next());
     else if (option == "--threads")
@@ -122,7 +140,54 @@ Options parse(int argc, char** argv) {
       options.body = option;
   }
   if (options.body.empty()) throw input_error("standard_picture: name the body's OBJ file.");
+  if (options.blur) {
+    const std::size_t key = options.body.rfind("_k0.obj");
+    if (key == std::string::npos) throw input_error("--blur needs a body whose name ends in _k0.obj, and _k1.obj.");
+    options.close = options.body.substr(0, key) + "_k1.obj";
+  }
   return options;
+}
+
+struct Seconds {
+  double wall = 0, cpu = 0;
+};
+
+/// What work takes.
+template <typename Work>
+Seconds seconds_of(const Work& work) {
+  const auto cpu = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+      return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  };
+  const double cpu_before = cpu();
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return {wall, cpu() - cpu_before};
+}
+
+/// Least of a few runs of Embree alone on the rays of one path a pixel.
+Seconds raw_seconds(const Scene& scene, const Options& options, const Threads& threads) {
+  const Threads one(1);
+  StageTimes times;
+  auto recording = std::make_unique<RecordingScene>(make_ray_scene(threads.count()));
+  const RecordingScene& recorded = *recording;
+  PathTracer tracer(one, times, std::move(recording));
+  RenderParams params = options.params;
+  params.samples = 1;
+  tracer.render(scene, params);
+  Seconds least{1e30, 1e30};
+  std::int64_t hits = 0;
+  for (int k = 0; k < 4; ++k) {
+    const Seconds seconds = seconds_of([&] { hits = recorded.shoot_again(threads); });
+    least = {std::min(least.wall, seconds.wall), std::min(least.cpu, seconds.cpu)};
+  }
+  fmt::print(stderr, "{} rays of {} x {} paths, {} of them hit\n", recorded.count(), params.width, params.height, hits);
+  return least;
 }
 
 void run(const Options& options) {
@@ -130,12 +195,16 @@ void run(const Options& options) {
   const Threads threads(options.threads);
   StageTimes times;
   PathTracer tracer(threads, times);
-  const auto start = std::chrono::steady_clock::now();
-  const Image image = tracer.render(scene, options.params);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const double paths = static_cast<double>(options.params.width) * options.params.height * options.params.samples;
-  fmt::print("spp\tseconds\tpaths_per_second\tbuild_seconds\n{}\t{:.4f}\t{:.4g}\t{:.4f}\n", options.params.samples,
-             seconds, paths / seconds, times.entries()["render/build"].seconds);
+  Image image;
+  Seconds traced = seconds_of([&] { image = tracer.render(scene, options.params); });
+  const double build = times.entries()["render/build"].seconds;
+  const double pixels = static_cast<double>(options.params.width) * options.params.height;
+  const double paths = pixels * options.params.samples;
+  const Seconds raw = raw_seconds(scene, options, threads);
+  fmt::print("spp\tseconds\tpaths_per_second\traw_paths_per_second\tshare\tcpu_seconds\tbuild_seconds\n");
+  fmt::print("{}\t{:.4f}\t{:.4g}\t{:.4g}\t{:.3f}\t{:.4f}\t{:.4f}\n", options.params.samples, traced.wall,
+             paths / (traced.wall - build), pixels / raw.wall, raw.cpu * options.params.samples / traced.cpu,
+             traced.cpu, build);
   if (options.output.empty()) return;
   const std::vector<std::uint8_t> bytes = encode_exr(image);
   std::ofstream(options.output, std::ios::binary)

@@ -14,8 +14,6 @@ namespace softreel {
 
 namespace {
 
-constexpr SkinRequest kNoBlur{true, 0, 1};
-
 StageKey preview_key(const Shot& shot, const StageKey& look) {
   return KeyHasher("preview 3").add(look).add(shot.output.view).add(shot.output.exposure).key();
 }
@@ -48,7 +46,7 @@ int run_preview(const ShotOptions& options) {
       preview = make_egl_preview();
       session.console().info("preview on " + preview->description());
     }
-    const Scene scene = scenes.at(frame, run.skin(frame, kNoBlur));
+    const Scene scene = scenes.at(frame, run.skin(frame, still_request(run.shot().render)));
     const auto start = std::chrono::steady_clock::now();
     const ScopedStage stage(session.context().times, "preview");
     const DisplayImage picture = preview->draw(scene, shot.render.params.width, shot.render.params.height,

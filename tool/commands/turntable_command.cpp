@@ -14,7 +14,6 @@ namespace softreel {
 namespace {
 
 /// Motion blur would be that of the body, not of the turning.
-constexpr SkinRequest kNoBlur{true, 0, 1};
 
 /// The camera after a share of a turn about the vertical through its target, to its right.
 Camera turned(Camera camera, double share) {
@@ -73,7 +72,7 @@ int run_turntable(const ShotOptions& options, int count) {
   Outputs outputs(shot.output.directory, shot.settings.name + ".turntable", session.context().log);
   session.prepare(outputs, run);
   SceneStage scenes(run);
-  Scene scene = scenes.at(frame, run.skin(frame, kNoBlur));
+  Scene scene = scenes.at(frame, run.skin(frame, still_request(run.shot().render)));
   scene.next_camera.reset();  // nothing moves
   const Camera start = scene.camera;
   Turntable turntable(session, outputs);

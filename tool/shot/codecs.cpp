@@ -126,6 +126,35 @@ Codec<float> single(const Range& range) {
   return codec;
 }
 
+namespace {
+
+template <typename Wide, typename Narrow>
+Codec<Wide> widened_by(const Codec<Narrow>& codec, Wide (*widen)(const Narrow&), Narrow (*narrow)(const Wide&)) {
+  Codec<Wide> wide;
+  wide.type = codec.type;
+  wide.accepted = codec.accepted;
+  wide.parts = codec.parts;
+  wide.parse = [parse = codec.parse, widen](const Place& place, const TomlValue& value) {
+    return widen(parse(place, value));
+  };
+  wide.print = [print = codec.print, narrow](const Wide& value) { return print(narrow(value)); };
+  return wide;
+}
+
+}  // namespace
+
+Codec<double> widened(const Codec<float>& codec) {
+  return widened_by<double, float>(
+      codec, [](const float& x) { return static_cast<double>(x); },
+      [](const double& x) { return static_cast<float>(x); });
+}
+
+Codec<Vec3> widened(const Codec<Vec3f>& codec) {
+  return widened_by<Vec3, Vec3f>(
+      codec, [](const Vec3f& v) { return Vec3(v.cast<double>()); },
+      [](const Vec3& v) { return Vec3f(v.cast<float>()); });
+}
+
 Codec<bool> toggle() {
   Codec<bool> codec;
   codec.type = "true or false";

@@ -48,6 +48,9 @@ TomlValue print_number(float value);
 Codec<double> number(const Range& range);
 /// Kept in single precision; what it cannot hold is refused.
 Codec<float> single(const Range& range);
+/// The same values in a wider type, for tracks, which blend in double.
+Codec<double> widened(const Codec<float>& codec);
+Codec<Vec3> widened(const Codec<Vec3f>& codec);
 Codec<bool> toggle();
 Codec<std::string> text();
 /// Text that can be part of a file's name.

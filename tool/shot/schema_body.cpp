@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "tool/shot/codecs.h"
+#include "tool/shot/keyed_appearance.h"
 #include "tool/shot/schema_tables.h"
 #include "tool/shot/shot_select.h"
 
@@ -190,24 +191,17 @@ const Table<MaterialSettings>& material_table() {
     physics("damping_mass", &E::damping_mass, kNotNegative, "1/s", "Slows all motion, as in syrup (Rayleigh).");
     physics("damping_stiffness", &E::damping_stiffness, kNotNegative, "s", "Slows deformation only (Rayleigh).");
     const auto share = [&t](const char* name, float Appearance::*member, const char* sentence) {
-      t.add(
-          name, [member](auto& m) -> auto& { return m.appearance.*member; }, single(kShare), "", sentence);
+      add_keyed(t, name, member, kShare, "", sentence);
     };
     const auto color = [&t](const char* name, Vec3f Appearance::*member, const Range& range, const char* unit,
-                            const char* sentence) {
-      t.add(
-          name, [member](auto& m) -> auto& { return m.appearance.*member; }, vector_of<Vec3f>(range, "[r, g, b]"), unit,
-          sentence);
-    };
+                            const char* sentence) { add_keyed(t, name, member, range, unit, sentence); };
     using A = Appearance;
     color("base_color", &A::base_color, kShare, "linear", "Share of the light that comes back.");
     share("roughness", &A::roughness, "0 mirrors, 1 is matte.");
     share("metallic", &A::metallic, "How much of it is metal.");
     share("specular", &A::specular, "Strength of the clear coat: it reflects 0.08 of this head-on.");
     share("transmission", &A::transmission, "How much of what is not metal is glass.");
-    t.add(
-        "ior", [](auto& m) -> auto& { return m.appearance.ior; }, single({1, 5, false}), "",
-        "Refractive index of the glass.");
+    add_keyed(t, "ior", &A::ior, {1, 5, false}, "", "Refractive index of the glass.");
     color("absorption", &A::absorption, kNotNegative, "1/m", "How fast the glass takes light in.");
     color("emission", &A::emission, kNotNegative, "W/(m^2 sr)", "Light that the surface gives off.");
     add_texture_fields(t);

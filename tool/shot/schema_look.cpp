@@ -1,4 +1,6 @@
-// The tables of the picture: camera, lights, environment, ground, render, output.
+// The tables of the picture: camera, environment, ground, render, output.
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "tool/shot/codecs.h"
@@ -17,59 +19,38 @@ void check_camera(const Place& place, const TomlValue& value, CameraSettings& ca
                         fmt::format("Add {} = [x, y, z] in m, or use mode = \"frame\".", field));
 }
 
-/// Fields of [[light]] that only one kind of light has.
-const std::vector<std::string>& fields_of(LightKind kind) {
-  static const std::vector<std::string> area{"center", "aim", "size", "power", "visible"};
-  static const std::vector<std::string> sun{"direction", "irradiance", "angle_deg"};
-  return kind == LightKind::Area ? area : sun;
+void note_environment_origin(const Place&, const TomlValue& value, Shot& shot) {
+  const TomlValue* image = value.find("image");
+  shot.environment_origin = image != nullptr ? image->origin : value.origin;
 }
 
-void check_light(const Place& place, const TomlValue& value, LightSettings& light) {
-  const LightKind other = light.kind == LightKind::Area ? LightKind::Sun : LightKind::Area;
-  for (const std::string& name : fields_of(other))
-    if (const TomlValue* given = value.find(name))
-      throw value_error(
-          {place.path + "." + name, place.text, place.problems}, *given,
-          light.kind == LightKind::Area ? "an area light has no such field" : "a sun has no such field",
-          light.kind == LightKind::Area ? "Remove it, or say type = \"sun\"." : "Remove it, or say type = \"area\".");
-  if (light.kind == LightKind::Area && light.center == light.aim)
-    throw value_error(place, value, "it aims at its own center", "Move center or aim.");
-  if (light.kind == LightKind::Sun && light.direction.isZero(0))
-    throw value_error(place, value, "its direction has no length", "Give the way its light travels.");
-}
-
-AreaLight resolved_area(const LightSettings& light) {
-  const Vec3 normal = (light.aim - light.center).normalized();
-  // A lamp that looks straight up or down lies along x; any other stands upright.
-  const Vec3 across = std::abs(normal.y()) > 0.999999 ? Vec3(Vec3::UnitX()) : Vec3::UnitY().cross(normal).normalized();
-  const Vec3 upward = normal.cross(across);
-  AreaLight area;
-  area.center = light.center.cast<float>();
-  area.u = (0.5 * light.size.x() * across).cast<float>();
-  area.v = (0.5 * light.size.y() * upward).cast<float>();
-  area.radiance = (light.color * (light.power / (4 * light.size.x() * light.size.y()))).cast<float>();
-  area.visible = light.visible;
-  return area;
-}
-
-SunLight resolved_sun(const LightSettings& light) {
-  SunLight sun;
-  sun.direction = light.direction.normalized().cast<float>();
-  sun.irradiance = (light.color * light.irradiance).cast<float>();
-  sun.angular_diameter = static_cast<float>(to_radians(light.angle_deg));
-  return sun;
+/// Pixels of crop and overscan.
+void check_render(const Place& place, const TomlValue& value, RenderSettings& render) {
+  const auto fail = [&](const char* name, const std::string& reason, const char* accepted, const char* next) {
+    const FieldText text{"", "", "", "", accepted, "", false, false};
+    const TomlValue* given = value.find(name);
+    throw value_error({place.path + "." + name, &text, place.problems}, given != nullptr ? *given : value, reason,
+                      next);
+  };
+  RenderParams& params = render.params;
+  if (params.min_samples % 8 != 0)
+    fail("min_samples", "samples are judged in batches of 8", "a multiple of 8, at least 16", "Round it up.");
+  if (render.curve.opening + render.curve.closing > 1)
+    fail(value.find("shutter_closing") != nullptr ? "shutter_closing" : "shutter_opening",
+         "the shutter would close before it is open", "shutter_opening and shutter_closing at most 1 together",
+         "Make one of the two shorter.");
+  params.window = {};
+  if (render.crop == Vec4(0, 0, 1, 1) && render.overscan == 0) return;
+  const auto pixel = [](double share, int size) { return static_cast<int>(std::lround(share * size)); };
+  const int more_x = pixel(render.overscan, params.width), more_y = pixel(render.overscan, params.height);
+  params.window = {pixel(render.crop[0], params.width) - more_x, pixel(render.crop[1], params.height) - more_y,
+                   pixel(render.crop[2], params.width) + more_x, pixel(render.crop[3], params.height) + more_y};
+  if (params.window.width() < 1 || params.window.height() < 1)
+    fail("crop", "no pixel is left", "[left, top, right, bottom], left below right and top below bottom",
+         "Give the larger numbers last.");
 }
 
 }  // namespace
-
-void resolve_lights(Shot& shot) {
-  shot.area_lights.clear();
-  shot.suns.clear();
-  for (const LightSettings& light : shot.lights) {
-    if (light.kind == LightKind::Area) shot.area_lights.push_back(resolved_area(light));
-    if (light.kind == LightKind::Sun) shot.suns.push_back(resolved_sun(light));
-  }
-}
 
 const Table<CameraSettings>& camera_table() {
   static const Table<CameraSettings> table = [] {
@@ -100,41 +81,10 @@ const Table<CameraSettings>& camera_table() {
   return table;
 }
 
-const Table<LightSettings>& light_table() {
-  static const Table<LightSettings> table = [] {
-    using L = LightSettings;
-    Table<L> t;
-    t.sentence = "A lamp or a sun.";
-    t.require("type", &L::kind, choice<LightKind>({{"area", LightKind::Area}, {"sun", LightKind::Sun}}), "",
-              "\"area\": a rectangle that shines from one side; \"sun\": a distant disk.")
-        .add("center", &L::center, vector_of<Vec3>(kAnyNumber), "m", "area: its middle.")
-        .add("aim", &L::aim, vector_of<Vec3>(kAnyNumber), "m", "area: the point it faces.")
-        .add("size", &L::size, vector_of<Vec2>(kPositive, "[width, height]"), "m", "area: its edges.")
-        .add("color", &L::color, vector_of<Vec3>(kNotNegative, kColorType), "linear", "Colour of its light.")
-        .add("power", &L::power, number(kNotNegative), "W",
-             "area: of the whole lamp; its radiance is power / (4 area).")
-        .add("visible", &L::visible, toggle(), "", "area: whether the camera sees the lamp itself.")
-        .add("direction", &L::direction, vector_of<Vec3>(kAnyNumber), "", "sun: the way its light travels.")
-        .add("irradiance", &L::irradiance, number(kNotNegative), "W/m^2", "sun: on a surface that faces it.")
-        .add("angle_deg", &L::angle_deg, number({0, 90, false}), "degrees",
-             "sun: diameter; small ones cast hard shadows.");
-    for (const LightKind kind : {LightKind::Area, LightKind::Sun})
-      for (const std::string& name : fields_of(kind))
-        for (Field<L>& field : t.fields)
-          if (field.text.path == name)
-            field.write = [kind, write = field.write](const L& light) {
-              return light.kind == kind ? write(light) : std::nullopt;
-            };
-    t.check = check_light;
-    return t;
-  }();
-  return table;
-}
-
 const Table<Shot>& environment_table() {
   static const Table<Shot> table = [] {
     Table<Shot> t;
-    t.sentence = "What surrounds the scene: a vertical gradient, or a picture.";
+    t.sentence = "What surrounds the scene: a vertical gradient, a picture, or a sky.";
     const auto color = [&t](const char* name, Vec3f Environment::*member, const char* sentence) {
       t.add(
           name, [member](auto& s) -> auto& { return s.environment.*member; },
@@ -145,16 +95,12 @@ const Table<Shot>& environment_table() {
     color("nadir", &Environment::nadir, "Radiance straight down.");
     t.add("image", &Shot::environment_image, file_path(), "",
           "A latitude-longitude picture (EXR, HDR, PNG, JPEG) instead of the gradient.", "none: the gradient")
-        .add(
-            "strength", [](auto& s) -> auto& { return s.environment.strength; }, single(kNotNegative), "",
-            "Factor on gradient or picture.")
-        .add(
-            "rotation_deg", [](auto& s) -> auto& { return s.environment.rotation; }, degrees_single(kAnyNumber),
-            "degrees", "Turns the picture about the vertical.");
-    t.check = [](const Place&, const TomlValue& value, Shot& shot) {
-      const TomlValue* image = value.find("image");
-      shot.environment_origin = image != nullptr ? image->origin : value.origin;
-    };
+        .add("strength", &Shot::environment_strength, keyed(widened(single(kNotNegative)), ""), "",
+             "Factor on gradient, picture or sky.")
+        .add("rotation_deg", &Shot::environment_rotation_deg, keyed(number(kAnyNumber), "degrees"), "degrees",
+             "Turns the picture about the vertical.")
+        .add_optional_table("sky", &Shot::sky, sky_table());
+    t.check = note_environment_origin;
     return t;
   }();
   return table;
@@ -181,7 +127,9 @@ const Table<Ground>& ground_table() {
             "Strength of its reflections.")
         .add("checker", &G::checker, single(kNotNegative), "m", "Edge of the squares of a two-tone pattern; 0: none.")
         .add("checker_color", &G::checker_color, vector_of<Vec3f>(kShare, kColorType), "linear",
-             "Colour of every other square.");
+             "Colour of every other square.")
+        .add("shadow_catcher", &G::shadow_catcher, toggle(), "",
+             "The camera sees the shadow on it, as alpha in PNG and EXR, and nothing of the surroundings.");
     return t;
   }();
   return table;
@@ -235,7 +183,16 @@ const Table<RenderSettings>& render_table() {
             "Of the picture.")
         .add(
             "samples", [](auto& r) -> auto& { return r.params.samples; }, whole<int>(1, 1 << 20), "paths a pixel",
-            "Four times as many halve the noise and take four times as long.")
+            "Four times as many halve the noise and take four times as long. With noise or time_limit: the most.")
+        .add(
+            "noise", [](auto& r) -> auto& { return r.params.noise; }, single(kShare), "of white",
+            "Each pixel stops when its error on the screen is this small, such as 0.01; 0: all get all samples.")
+        .add(
+            "min_samples", [](auto& r) -> auto& { return r.params.min_samples; }, whole<int>(16, 1 << 20),
+            "paths a pixel", "noise: what every pixel gets, a multiple of 8.")
+        .add(
+            "time_limit", [](auto& r) -> auto& { return r.params.time_limit; }, number(kNotNegative), "s",
+            "A frame takes whole passes until then; the picture depends on the machine. 0: no limit.")
         .add(
             "max_bounces", [](auto& r) -> auto& { return r.params.max_bounces; }, whole<int>(0, 1024), "",
             "How often a path is scattered at most.")
@@ -248,7 +205,16 @@ const Table<RenderSettings>& render_table() {
         .add("shutter", &R::shutter, number(kShare), "frames",
              "How long the shutter is open, up to the frame; 0: no motion blur.")
         .add("blur_segments", &R::blur_segments, whole<int>(1, 64), "",
-             "Straight pieces of each point's path while the shutter is open.")
+             "Straight pieces of each point's path, and the camera's, while the shutter is open.")
+        .add(
+            "shutter_opening", [](auto& r) -> auto& { return r.curve.opening; }, single(kShare), "of shutter",
+            "How long it takes to open: 0 at once; 0.5, with shutter_closing, gives blur that fades at both ends.")
+        .add(
+            "shutter_closing", [](auto& r) -> auto& { return r.curve.closing; }, single(kShare), "of shutter",
+            "How long it takes to close.")
+        .add("crop", &R::crop, vector_of<Vec4>(kShare, "[left, top, right, bottom]"), "of the picture",
+             "Computes this part only, with the same pixels.")
+        .add("overscan", &R::overscan, number(kShare), "of the picture", "Adds this much of the view at each side.")
         .add(
             "auxiliary", [](auto& r) -> auto& { return r.params.auxiliary; }, toggle(), "",
             "Writes albedo, normal and depth into the EXR too.")
@@ -256,6 +222,7 @@ const Table<RenderSettings>& render_table() {
             "channels", [](auto& r) -> auto& { return r.params.channels; }, channels_codec(), "",
             "What the EXR holds beside the colour; with \"motion\" each frame asks for the next one.", "none");
     add_heat_fields(t);
+    t.check = check_render;
     return t;
   }();
   return table;

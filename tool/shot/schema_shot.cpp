@@ -218,7 +218,6 @@ void check_shot(const Place& place, const TomlValue& value, Shot& shot) {
                      (*table.find("region")->array())[i].find("material"));
   }
   if (shot.camera.focal_length_mm.keys.empty()) shot.camera.focal_length_mm.keys = {{0, 50, Ease::Smooth}};
-  resolve_lights(shot);
   open_for_dial(value, shot);
 }
 

@@ -18,6 +18,7 @@ Codec<RotationMethod> rotation_method();
 
 const Table<CameraSettings>& camera_table();
 const Table<LightSettings>& light_table();
+const Table<SkySettings>& sky_table();
 const Table<Shot>& environment_table();
 const Table<Ground>& ground_table();
 const Table<RenderSettings>& render_table();
@@ -38,8 +39,5 @@ const std::vector<Alternatives>& alternatives();
 
 /// Throws the error for two alternatives of a table that are both given; `pattern` is the table's path in the schema.
 void check_alternatives(const Place& place, const TomlValue& value, const std::string& pattern);
-
-/// Makes the renderer's lights of shot.lights.
-void resolve_lights(Shot& shot);
 
 }  // namespace softreel

@@ -28,6 +28,12 @@ struct Origin {
 /// "FILE:LINE:COLUMN", or the file alone where there is no line.
 std::string to_string(const Origin& origin);
 
+/// One value at all frames.
+template <typename T>
+Track<T> constant_track(const T& value) {
+  return {{{0, value, Ease::Smooth}}};
+}
+
 enum class StartState { Rest, Equilibrium };
 enum class SimulationMode { Dynamic, Static };
 enum class UpAxis { X, Y, Z };
@@ -54,10 +60,19 @@ struct TextureSettings {
   bool any() const { return !base_color.empty() || !roughness.empty() || !normal.empty() || !bump.empty(); }
 };
 
+/// A visible property that changes over the frames: of a number or of a colour.
+struct AppearanceTrack {
+  float Appearance::*number = nullptr;
+  Track<double> numbers;
+  Vec3f Appearance::*color = nullptr;
+  Track<Vec3> colors;
+};
+
 /// Physical and visible properties under one name.
 struct MaterialSettings {
   ElementMaterial physics;
-  Appearance appearance;
+  Appearance appearance;                ///< keyed properties as at their first key
+  std::vector<AppearanceTrack> tracks;  ///< of the keyed properties
   TextureSettings textures;
   Origin origin;  ///< of the table
 };
@@ -143,20 +158,32 @@ struct CameraSettings {
   double f_number = 0;
 };
 
-enum class LightKind { Area, Sun };
+enum class LightKind { Area, Disk, Sphere, Sun };
 
 /// A light in the words of a shot.
 struct LightSettings {
   LightKind kind = LightKind::Area;
-  Vec3 center = Vec3(0, 4, 0);        ///< area: m
-  Vec3 aim = Vec3::Zero();            ///< area: the point it faces, m
-  Vec2 size = Vec2(1, 1);             ///< area: width and height, m
-  double power = 100;                 ///< area: W; the radiance is color power / (4 area)
-  bool visible = true;                ///< area: to camera rays
-  Vec3 direction = Vec3(-1, -2, -1);  ///< sun: the way its light travels, any length
-  double irradiance = 1;              ///< sun: W/m^2 on a surface that faces it, times color
-  double angle_deg = 0.53;            ///< sun: diameter of its disk
-  Vec3 color = Vec3::Ones();          ///< linear
+  Track<Vec3> center = constant_track(Vec3(0, 4, 0));        ///< all but the sun: m
+  Track<Vec3> aim = constant_track(Vec3(0, 0, 0));           ///< area, disk: the point it faces, m
+  Vec2 size = Vec2(1, 1);                                    ///< area, disk: width and height, m
+  double radius = 0.25;                                      ///< sphere: m
+  Track<double> power = constant_track(100.0);               ///< all but the sun: W
+  bool visible = true;                                       ///< all but the sun: to camera rays
+  Track<Vec3> direction = constant_track(Vec3(-1, -2, -1));  ///< sun: the way its light travels, any length
+  Track<double> irradiance = constant_track(1.0);            ///< sun: W/m^2 on a surface that faces it, times color
+  double angle_deg = 0.53;                                   ///< sun: diameter of its disk
+  Track<Vec3> color = constant_track(Vec3(1, 1, 1));         ///< linear
+  Origin origin;
+};
+
+/// Daylight in the words of a shot.
+struct SkySettings {
+  Track<double> turbidity = constant_track(3.0);
+  Track<double> elevation_deg = constant_track(45.0);  ///< of the sun
+  Track<double> azimuth_deg = constant_track(35.0);    ///< of the sun; 0: in front
+  double ground_albedo = 0.2;
+  bool sun = true;  ///< with the sun's own light
+  double sun_angle_deg = 0.53;
   Origin origin;
 };
 
@@ -176,8 +203,11 @@ struct HeatSettings {
 struct RenderSettings {
   RenderParams params;
   HeatSettings heat;
-  double shutter = 0;     ///< share of a frame that the shutter is open, ending at the frame; 0: no motion blur
-  int blur_segments = 2;  ///< straight pieces of each point's path while the shutter is open
+  double shutter = 0;            ///< share of a frame that the shutter is open, ending at the frame; 0: no motion blur
+  int blur_segments = 2;         ///< straight pieces of each point's path while the shutter is open
+  ShutterCurve curve;            ///< of the shutter
+  Vec4 crop = Vec4(0, 0, 1, 1);  ///< left, top, right, bottom, shares of the picture
+  double overscan = 0;           ///< share of the picture that is added at each side
 };
 
 struct OutputSettings {
@@ -213,11 +243,12 @@ struct Shot {
   int threads = 0;  ///< 0: all processors
   Vec3 gravity = Vec3(0, -9.81, 0);
   CameraSettings camera;
-  std::vector<LightSettings> lights;   ///< as the file says them, in its order
-  std::vector<AreaLight> area_lights;  ///< made of `lights`
-  std::vector<SunLight> suns;          ///< made of `lights`
-  Environment environment;             ///< its image is not loaded yet
-  std::string environment_image;       ///< resolved path; empty: gradient
+  std::vector<LightSettings> lights;  ///< in the order of the file; lights_at makes the renderer's of them
+  Environment environment;            ///< its image, strength and rotation: see below
+  Track<double> environment_strength = constant_track(1.0);
+  Track<double> environment_rotation_deg = constant_track(0.0);
+  std::string environment_image;   ///< resolved path; empty: gradient or sky
+  std::optional<SkySettings> sky;  ///< instead of gradient and image
   Origin environment_origin;
   std::optional<Ground> ground;
   RenderSettings render;

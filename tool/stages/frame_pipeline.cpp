@@ -74,7 +74,7 @@ class Pipeline {
     } else {
       sent_.insert(trace);
       job.scene = scenes_.at(frame, run_.skin(frame, skin_request(run_.shot().render)));
-      job.content = scenes_.content_key(job.scene);
+      job.content = scenes_.content_key(frame, job.scene);
       job.source = recall_equal(frame, job.content);
     }
     return job;

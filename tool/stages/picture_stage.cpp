@@ -1,6 +1,9 @@
 #include "tool/stages/picture_stage.h"
 
 #include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
 
 #include <fmt/format.h>
 
@@ -143,7 +146,14 @@ void PictureStage::place(const File& file, const Cache::StoredFile& stored, cons
 Image PictureStage::trace(const Scene& scene) {
   if (!tracer_) tracer_ = std::make_unique<PathTracer>(context_.threads, context_.times);
   const ScopedStage stage(context_.times, "render");
-  return tracer_->render(scene, shot_.render.params, [this] { return context_.cancelled.load(); });
+  Image image = tracer_->render(scene, shot_.render.params, [this] { return context_.cancelled.load(); });
+  if (const Channel* samples = image.find("samples")) {
+    const auto [least, most] = std::minmax_element(samples->pixels.begin(), samples->pixels.end());
+    const double mean = std::accumulate(samples->pixels.begin(), samples->pixels.end(), 0.0) /
+                        static_cast<double>(samples->pixels.size());
+    context_.log.info(fmt::format("samples a pixel: {} to {}, {:.1f} on average", *least, *most, mean));
+  }
+  return image;
 }
 
 void PictureStage::keep(int frame, const StageKey& content, const Image& image, double seconds) {

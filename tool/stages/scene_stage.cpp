@@ -14,6 +14,11 @@ namespace softreel {
 
 namespace {
 
+/// A sky takes the place of the picture.
+bool shows_picture(const Shot& shot) {
+  return !shot.environment_image.empty() && !shot.sky;
+}
+
 /// Runs `work` on the environment image; its errors get the place of the field.
 template <typename Work>
 auto at_environment(const Shot& shot, Work work) {
@@ -27,11 +32,11 @@ auto at_environment(const Shot& shot, Work work) {
 
 }  // namespace
 
-SceneStage::SceneStage(ShotRun& run) : run_(run), textures_(run.shot()), environment_(run.shot().environment) {
+SceneStage::SceneStage(ShotRun& run) : run_(run), textures_(run.shot()) {
   const Shot& shot = run.shot();
   if (!shows_heat())
     for (std::size_t b = 0; b < run.body_count(); ++b) textures_.require_match(run.settings(b), run.loaded(b));
-  if (!shot.environment_image.empty())
+  if (shows_picture(shot))
     environment_checksum_ = at_environment(shot, [&] { return hash_bytes(read_file(shot.environment_image)); });
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const Bounds bounds = used_bounds(run.loaded(b).surface);
@@ -80,6 +85,19 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
   return camera;
 }
 
+std::vector<Camera> camera_motion_at(const CameraSettings& settings, const RenderSettings& render, double frame,
+                                     const Bounds& rest_bounds, double aspect) {
+  if (!(render.shutter > 0)) return {};
+  std::vector<Camera> cameras;
+  for (int k = 0; k <= render.blur_segments; ++k) {
+    const double time = render.shutter * (static_cast<double>(k) / render.blur_segments - 1);
+    cameras.push_back(camera_at(settings, frame + time, rest_bounds, aspect));
+  }
+  const bool stands =
+      std::all_of(cameras.begin(), cameras.end(), [&](const Camera& camera) { return camera == cameras.back(); });
+  return stands ? std::vector<Camera>{} : cameras;
+}
+
 SkinRequest skin_request(const RenderSettings& settings) {
   const ChannelSet& channels = settings.params.channels;
   return {true,
@@ -115,16 +133,34 @@ void add(KeyHasher& key, const Camera& c) {
 
 }  // namespace
 
-Camera SceneStage::camera(int frame) const {
+Camera SceneStage::camera(double frame) const {
   const RenderParams& params = run_.shot().render.params;
   return camera_at(run_.shot().camera, frame, rest_bounds_, static_cast<double>(params.width) / params.height);
+}
+
+std::vector<Camera> SceneStage::camera_motion(int frame) const {
+  const RenderSettings& render = run_.shot().render;
+  return camera_motion_at(run_.shot().camera, render, frame, rest_bounds_,
+                          static_cast<double>(render.params.width) / render.params.height);
+}
+
+SceneStage::Look SceneStage::look(int frame) const {
+  const Shot& shot = run_.shot();
+  Look look{camera(frame),
+            camera_motion(frame),
+            lights_at(shot, frame),
+            environment_at(shot, frame),
+            daylight_at(shot, frame),
+            {}};
+  for (std::size_t b = 0; b < run_.body_count(); ++b) look.appearances.push_back(appearance(b, frame));
+  return look;
 }
 
 void SceneStage::load_images() {
   const Shot& shot = run_.shot();
   if (!shows_heat()) textures_.load();
-  if (!shot.environment_image.empty() && !environment_.image)
-    environment_.image = at_environment(shot, [&] {
+  if (shows_picture(shot) && !environment_image_)
+    environment_image_ = at_environment(shot, [&] {
       auto image = std::make_shared<const EnvironmentImage>(read_environment(shot.environment_image));
       if (hash_bytes(read_file(shot.environment_image)) != environment_checksum_)
         throw work_error(shot.environment_image + ": changed while the shot was being rendered.\n  Run again.");
@@ -136,18 +172,27 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
   const Shot& shot = run_.shot();
   CHECK(bodies.size() == run_.body_count());
   load_images();
+  Look look = this->look(frame);
+  if (look.day && drawn_day_ != look.day) {
+    environment_image_ = sky_image(SkyModel(*look.day));
+    drawn_day_ = look.day;
+  }
   Scene scene;
-  scene.camera = camera(frame);
+  scene.camera = look.camera;
   if (shot.render.params.channels.has(PictureChannel::Motion)) scene.next_camera = camera(frame + 1);
-  scene.area_lights = shot.area_lights;
-  scene.suns = shot.suns;
-  scene.environment = environment_;
+  scene.camera_motion = std::move(look.camera_motion);
+  scene.shutter = shot.render.curve;
+  scene.area_lights = std::move(look.lights.lamps);
+  scene.suns = std::move(look.lights.suns);
+  scene.environment = look.environment;
+  scene.environment.image = environment_image_;
+  if (look.day) scene.environment.rotation = 0;  // its sun says how it is turned
   scene.ground = shot.ground;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     MotionMesh mesh;
     mesh.name = shot.bodies[b].name;
     mesh.triangles = run_.loaded(b).surface.triangles;
-    mesh.appearance = appearance(b);
+    mesh.appearance = look.appearances[b];
     mesh.material = shot.bodies[b].material;
     mesh.next_positions = to_float(bodies[b].next_positions);
     if (!shows_heat()) mesh.coloring = textures_.coloring(shot.bodies[b], run_.loaded(b));
@@ -164,8 +209,8 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
 }
 
 /// Matt where it shows heat, whatever the material is, so that colours can be read.
-Appearance SceneStage::appearance(std::size_t body) const {
-  if (!shows_heat()) return run_.shot().materials.at(run_.settings(body).material).appearance;
+Appearance SceneStage::appearance(std::size_t body, int frame) const {
+  if (!shows_heat()) return appearance_at(run_.shot().materials.at(run_.settings(body).material), frame);
   Appearance matt;
   matt.roughness = 0.6f;
   matt.specular = 0.25f;
@@ -198,28 +243,34 @@ void SceneStage::draw_legend(DisplayImage& image) const {
 }
 
 /// All but the surfaces.
-void SceneStage::add_look(KeyHasher& key, const Camera& camera) const {
+void SceneStage::add_look(KeyHasher& key, const Look& look) const {
   const Shot& shot = run_.shot();
-  add(key, camera);
-  const Environment& e = shot.environment;
+  add(key, look.camera);
+  const Environment& e = look.environment;
   key.add(e.strength).add(environment_checksum_);
-  if (environment_checksum_.empty())
+  if (look.day)
+    key.add("sky")
+        .add(look.day->elevation)
+        .add(look.day->azimuth)
+        .add(look.day->turbidity)
+        .add(look.day->ground_albedo);
+  else if (environment_checksum_.empty())
     key.add(e.zenith).add(e.horizon).add(e.nadir);
   else
     key.add(e.rotation);
-  for (std::size_t b = 0; b < run_.body_count(); ++b) add(key, appearance(b));
-  for (const AreaLight& light : shot.area_lights)
-    key.add(light.center).add(light.u).add(light.v).add(light.radiance).add(light.visible);
-  for (const SunLight& sun : shot.suns) key.add(sun.direction).add(sun.irradiance).add(sun.angular_diameter);
+  for (const Appearance& appearance : look.appearances) add(key, appearance);
+  for (const AreaLight& lamp : look.lights.lamps)
+    key.add(lamp.shape).add(lamp.center).add(lamp.u).add(lamp.v).add(lamp.radiance).add(lamp.visible);
+  for (const SunLight& sun : look.lights.suns) key.add(sun.direction).add(sun.irradiance).add(sun.angular_diameter);
   if (const auto& ground = shot.ground) {
-    key.add(ground->style).add(ground->height).add(ground->size).add(ground->sweep);
+    key.add(ground->style).add(ground->height).add(ground->size).add(ground->sweep).add(ground->shadow_catcher);
     add(key, ground->appearance);
     key.add(ground->checker).add(ground->checker_color);
   }
   key.add(shot.render.params.width).add(shot.render.params.height);
 }
 
-void SceneStage::add_tracing(KeyHasher& key) const {
+void SceneStage::add_tracing(KeyHasher& key, const std::vector<Camera>& camera_motion) const {
   const RenderParams& params = run_.shot().render.params;
   key.add(params.samples).add(params.max_bounces).add(params.clamp);
   key.add(params.caustic_roughness).add(params.auxiliary);
@@ -228,28 +279,36 @@ void SceneStage::add_tracing(KeyHasher& key) const {
     if (params.channels.has(PictureChannel::ObjectId)) key.add(body.name);
     if (params.channels.has(PictureChannel::MaterialId)) key.add(body.material);
   }
+  key.add(params.noise).add(params.noise > 0 ? params.min_samples : 0).add(params.time_limit);
+  const PixelWindow& window = params.window;
+  key.add(window.left).add(window.top).add(window.right).add(window.bottom);
+  for (const Camera& camera : camera_motion) add(key, camera);
+  const RenderSettings& render = run_.shot().render;
+  if (render.shutter > 0) key.add(render.curve.opening).add(render.curve.closing);
 }
 
 StageKey SceneStage::trace_key(int frame) const {
   KeyHasher key("trace 3");
-  add_look(key, camera(frame));
-  add_tracing(key);
+  const Look look = this->look(frame);
+  add_look(key, look);
+  add_tracing(key, look.camera_motion);
   if (run_.shot().render.params.channels.has(PictureChannel::Motion)) add(key, camera(frame + 1));
   if (!coloring_key_.empty()) key.add(coloring_key_);
   return key.add(run_.surfaces_key(frame, skin_request(run_.shot().render))).key();
 }
 
 StageKey SceneStage::preview_key(int frame) const {
-  KeyHasher key("preview 3");
-  add_look(key, camera(frame));
+  KeyHasher key("preview 4");
+  add_look(key, look(frame));
   if (!coloring_key_.empty()) key.add(coloring_key_);
-  return key.add(run_.surfaces_key(frame, {true, 0, 1})).key();
+  return key.add(run_.surfaces_key(frame, still_request(run_.shot().render))).key();
 }
 
-StageKey SceneStage::content_key(const Scene& scene) const {
+StageKey SceneStage::content_key(int frame, const Scene& scene) const {
   KeyHasher key("picture 3");
-  add_look(key, scene.camera);
-  add_tracing(key);
+  const Look look = this->look(frame);
+  add_look(key, look);
+  add_tracing(key, look.camera_motion);
   if (scene.next_camera) add(key, *scene.next_camera);
   if (shows_heat()) {
     const HeatRange range = heat_range();

@@ -1,11 +1,13 @@
 /// From a shot and its bodies' surfaces at one frame to the scene that is rendered or previewed.
 #pragma once
 
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "render/scene/scene.h"
+#include "tool/shot/keyed_look.h"
 #include "tool/shot/shot.h"
 #include "tool/stages/heat_map.h"
 #include "tool/stages/key.h"
@@ -23,7 +25,7 @@ class SceneStage {
 
   /// Decodes the environment image and the textures that are not decoded yet. Throws input_error.
   void load_images();
-  /// The scene of a frame; loads the images first.
+  /// The scene of a frame; loads the images first. Keys of lights and materials are at their values.
   Scene at(int frame, const std::vector<SkinnedBody>& bodies);
 
   /// Key of the picture of a frame, of what the shot says and what the surfaces depend on: known before they are.
@@ -32,7 +34,7 @@ class SceneStage {
   StageKey preview_key(int frame) const;
   /// Key of the picture of a scene: everything its pixels depend on, and nothing that led to it. Frames that look the
   /// same have the same one.
-  StageKey content_key(const Scene& scene) const;
+  StageKey content_key(int frame, const Scene& scene) const;
 
   /// The range of the shot's heat: the given one, or what find_heat_range finds, which the first call may have to
   /// simulate the whole shot for. Any thread may ask once a scene was made; before, only the one that makes them.
@@ -42,24 +44,40 @@ class SceneStage {
 
  private:
   bool shows_heat() const { return run_.shot().render.heat.quantity != HeatQuantity::None; }
-  Appearance appearance(std::size_t body) const;
+  /// All of a scene but the surfaces and the picture of the surroundings.
+  struct Look {
+    Camera camera;
+    std::vector<Camera> camera_motion;
+    FrameLights lights;
+    Environment environment;
+    std::optional<Daylight> day;
+    std::vector<Appearance> appearances;  ///< per body
+  };
+  Look look(int frame) const;
+  Appearance appearance(std::size_t body, int frame) const;
   void add_coloring(KeyHasher& key) const;
-  void add_look(KeyHasher& key, const Camera& camera) const;
-  void add_tracing(KeyHasher& key) const;
-  Camera camera(int frame) const;
+  void add_look(KeyHasher& key, const Look& look) const;
+  void add_tracing(KeyHasher& key, const std::vector<Camera>& camera_motion) const;
+  Camera camera(double frame) const;
+  std::vector<Camera> camera_motion(int frame) const;
 
   ShotRun& run_;
   MaterialTextures textures_;
   mutable std::mutex range_mutex_;
   mutable std::optional<HeatRange> found_range_;
-  Environment environment_;
-  StageKey environment_checksum_;  ///< of the image file; empty without one
+  std::shared_ptr<const EnvironmentImage> environment_image_;
+  std::optional<Daylight> drawn_day_;  ///< the sky of environment_image_, where the shot has one
+  StageKey environment_checksum_;      ///< of the image file; empty without one
   Bounds rest_bounds_;
   StageKey coloring_key_;  ///< empty where every body has one look
 };
 
 /// The camera of a shot at a frame. rest_bounds: of all bodies at rest, for CameraMode::Frame.
 Camera camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
+
+/// The cameras at the times of the shutter that ends at a frame, as Scene::camera_motion: empty if all are alike.
+std::vector<Camera> camera_motion_at(const CameraSettings& settings, const RenderSettings& render, double frame,
+                                     const Bounds& rest_bounds, double aspect);
 
 /// What a request for skinned surfaces must hold for the shot's motion blur.
 SkinRequest skin_request(const RenderSettings& settings);

@@ -152,6 +152,22 @@ TEST_F(Skipping, ALightOrTheCameraTracesAndDoesNotSimulate) {
   }
 }
 
+TEST_F(Skipping, AKeyOfALookTracesTheFramesWhoseValuesItChanges) {
+  start("looks");
+  const std::string before = "--set 'environment.strength=[{frame=1,value=1},{frame=3,value=2}]' ";
+  EXPECT_EQ(run_shot(before).traced, 4);
+  const Work longer = run_shot("--set 'environment.strength=[{frame=1,value=1},{frame=3,value=2},{frame=4,value=3}]' ");
+  EXPECT_EQ(longer.traced, 1);
+  EXPECT_EQ(longer.kept, 3);
+  const Work material =
+      run_shot(before + "--set 'material.soft.base_color=[{frame=2,value=[0.8,0.8,0.8]},{frame=4,value=[1,0,0]}]'");
+  EXPECT_EQ(material.computed, 0);
+  const Work later =
+      run_shot(before + "--set 'material.soft.base_color=[{frame=3,value=[0.8,0.8,0.8]},{frame=4,value=[1,0,0]}]'");
+  EXPECT_EQ(later.traced, 1) << "frames 1, 2 and 4 have the colours that they had";
+  EXPECT_EQ(later.kept, 3);
+}
+
 TEST_F(Skipping, TheLookOfAMaterialTouchesNoSimulationAndItsPhysicsDoes) {
   start("look");
   run_shot();

@@ -98,7 +98,7 @@ TEST_F(ShotMessage, NamesWhatIsMissing) {
   expect_parts(message(""), {"s.toml:1:1: body.NAME"});
   expect_parts(message(body("[[body.a.pin]]\n")), {"s.toml:3:1: body.a.pin[0].select = (nothing)"});
   expect_parts(message(body("[[body.a.pull]]\nselect = { all = true }\n")), {"body.a.pull[0].stiffness = (nothing)"});
-  expect_parts(message(body("[[light]]\n")), {"light[0].type = (nothing)", "\"area\" or \"sun\""});
+  expect_parts(message(body("[[light]]\n")), {"light[0].type = (nothing)", "\"sphere\" or \"sun\""});
   expect_parts(message(body("[camera]\nmode = \"place\"\ntarget = [0, 0, 0]\n")), {"needs a position", "Add position"});
   expect_parts(message(body("[[body.a.region]]\nselect = { all = true }\n")), {"it changes nothing"});
 }

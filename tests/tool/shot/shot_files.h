@@ -235,27 +235,39 @@ focus_distance = [{ frame = 2, value = 3.1, ease = "linear" }]
 
 [[light]]
 type = "sun"
-direction = [-1, -1, -0.5]
-color = [1, 0.9, 0.8]
-irradiance = 2
+direction = [{ frame = 2, value = [-1, -1, -0.5], ease = "linear" }]
+color = [{ frame = 2, value = [1, 0.9, 0.8], ease = "linear" }]
+irradiance = [{ frame = 2, value = 2, ease = "linear" }]
 angle_deg = 2
 
 [[light]]
 type = "area"
-center = [2, 4, 3]
-aim = [0, 0.5, 0]
+center = [{ frame = 1, value = [2, 4, 3], ease = "linear" }]
+aim = [{ frame = 1, value = [0, 0.5, 0], ease = "linear" }]
 size = [2, 1]
 color = [1, 0.9, 0.7]
-power = 400
+power = [{ frame = 1, value = 400 }, { frame = 9, value = 0, ease = "linear" }]
 visible = false
+
+[[light]]
+type = "sphere"
+radius = 0.3
 
 [environment]
 zenith = [0.1, 0.2, 0.3]
 horizon = [0.4, 0.5, 0.6]
 nadir = [0.7, 0.8, 0.9]
 image = "../studio.exr"
-strength = 1.3
-rotation_deg = 77.7
+strength = [{ frame = 1, value = 1.3, ease = "linear" }]
+rotation_deg = [{ frame = 1, value = 77.7, ease = "linear" }]
+
+[environment.sky]
+turbidity = [{ frame = 1, value = 4, ease = "linear" }]
+elevation_deg = [{ frame = 1, value = 20, ease = "linear" }]
+azimuth_deg = [{ frame = 1, value = 120, ease = "linear" }]
+ground_albedo = 0.4
+sun = false
+sun_angle_deg = 2
 
 [ground]
 style = "sweep"
@@ -267,16 +279,24 @@ roughness = 0.61
 specular = 0.31
 checker = 0.5
 checker_color = [0.11, 0.22, 0.33]
+shadow_catcher = true
 
 [render]
 width = 640
 height = 360
 samples = 64
+noise = 0.01
+min_samples = 32
+time_limit = 60
 max_bounces = 4
 clamp = 10
 caustic_roughness = 0.2
 shutter = 0.5
 blur_segments = 4
+shutter_opening = 0.25
+shutter_closing = 0.5
+crop = [0.1, 0, 0.9, 1]
+overscan = 0.05
 auxiliary = true
 channels = ["albedo", "normal", "depth", "position", "motion", "object_id", "material_id", "strain", "samples"]
 heat = "stress"

@@ -1,6 +1,7 @@
 #include "tool/shot/shot_layers.h"
 
 #include "tests/tool/shot/shot_files.h"
+#include "tool/shot/keyed_look.h"
 
 namespace softreel {
 namespace {
@@ -34,10 +35,10 @@ TEST_F(UsePresets, FollowsPathsRelativeToTheFileThatSaysThem) {
 
 TEST_F(UsePresets, ReplacesListsAsAWhole) {
   write("lights.toml", "[[light]]\ntype = \"sun\"\n[[light]]\ntype = \"sun\"\n[camera]\nshift = [1, 2, 3]\n");
-  EXPECT_EQ(load("use = [\"lights.toml\"]\n" + body("")).suns.size(), 2u);
+  EXPECT_EQ(load("use = [\"lights.toml\"]\n" + body("")).lights.size(), 2u);
   const Shot shot = load("use = [\"lights.toml\"]\n" + body("[[light]]\ntype = \"area\"\n"));
-  EXPECT_EQ(shot.suns.size(), 0u);
-  EXPECT_EQ(shot.area_lights.size(), 1u);
+  EXPECT_EQ(lights_at(shot, 1).suns.size(), 0u);
+  EXPECT_EQ(lights_at(shot, 1).lamps.size(), 1u);
   EXPECT_EQ(shot.camera.shift, Vec3(1, 2, 3));
 }
 

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "tests/tool/shot/shot_files.h"
+#include "tool/shot/keyed_look.h"
 
 namespace softreel {
 namespace {
@@ -20,7 +21,7 @@ TEST_F(LoadShot, TakesDefaultsFromTheStructs) {
   EXPECT_EQ(shot.bodies[0].fit, 0);
   EXPECT_EQ(shot.gravity, Vec3(0, -9.81, 0));
   EXPECT_FALSE(shot.ground.has_value());
-  EXPECT_TRUE(shot.area_lights.empty());
+  EXPECT_TRUE(lights_at(shot, 1).lamps.empty());
   EXPECT_EQ(shot.camera.focal_length_mm.at(7), 50);
   EXPECT_TRUE(shot.camera.focus_distance.keys.empty());
 }
@@ -79,7 +80,7 @@ TEST_F(LoadShot, TurnsDegreesIntoRadians) {
                 "[environment]\nrotation_deg = 180\n"));
   EXPECT_DOUBLE_EQ(shot.bodies[0].pins[0].keys.at(1).rotate.x(), std::numbers::pi / 2);
   EXPECT_DOUBLE_EQ(shot.bodies[0].pins[0].keys.at(1).rotate.z(), -4 * std::numbers::pi);
-  EXPECT_FLOAT_EQ(shot.environment.rotation, std::numbers::pi_v<float>);
+  EXPECT_FLOAT_EQ(environment_at(shot, 1).rotation, std::numbers::pi_v<float>);
 }
 
 TEST_F(LoadShot, HoldsAPinWithoutKeysWhereItRests) {
@@ -140,9 +141,9 @@ TEST_F(LoadShot, MakesLampsThatFaceTheirAimAndGiveTheirPower) {
   for (const char* aim : {"[0, 0.5, 0]", "[2, 9, 3]", "[2, -1, 3]", "[-7, 4, 3]"}) {
     const Shot shot = load(
         body(std::string("[[light]]\ntype = \"area\"\ncenter = [2, 4, 3]\nsize = [2, 3]\npower = 120\naim = ") + aim));
-    ASSERT_EQ(shot.area_lights.size(), 1u);
-    const AreaLight& lamp = shot.area_lights[0];
-    const Vec3f forward = (shot.lights[0].aim - shot.lights[0].center).cast<float>().normalized();
+    ASSERT_EQ(lights_at(shot, 1).lamps.size(), 1u);
+    const AreaLight lamp = lights_at(shot, 1).lamps[0];
+    const Vec3f forward = (shot.lights[0].aim.at(1) - shot.lights[0].center.at(1)).cast<float>().normalized();
     EXPECT_NEAR(lamp.u.cross(lamp.v).normalized().dot(forward), 1, 1e-6);
     EXPECT_NEAR(lamp.u.norm(), 1, 1e-6);
     EXPECT_NEAR(lamp.v.norm(), 1.5, 1e-6);
@@ -152,10 +153,10 @@ TEST_F(LoadShot, MakesLampsThatFaceTheirAimAndGiveTheirPower) {
 
 TEST_F(LoadShot, MakesSunsOfUnitDirection) {
   const Shot shot = load(kFullShot);
-  ASSERT_EQ(shot.suns.size(), 1u);
-  EXPECT_NEAR(shot.suns[0].direction.norm(), 1, 1e-6);
-  EXPECT_TRUE(shot.suns[0].irradiance.isApprox(Vec3f(2, 1.8f, 1.6f)));
-  EXPECT_NEAR(shot.suns[0].angular_diameter, 2 * std::numbers::pi / 180, 1e-7);
+  ASSERT_EQ(lights_at(shot, 1).suns.size(), 1u);
+  EXPECT_NEAR(lights_at(shot, 1).suns[0].direction.norm(), 1, 1e-6);
+  EXPECT_TRUE(lights_at(shot, 1).suns[0].irradiance.isApprox(Vec3f(2, 1.8f, 1.6f)));
+  EXPECT_NEAR(lights_at(shot, 1).suns[0].angular_diameter, 2 * std::numbers::pi / 180, 1e-7);
 }
 
 TEST_F(LoadShot, TakesWholeNumbersWhereANumberIsWantedAndBack) {

@@ -44,7 +44,7 @@ TEST_F(SetOverrides, ReachIntoLists) {
                                      "body.second_by_name.pin[0].keys[1].scale[2]=5", "light[1].power=3"});
   EXPECT_EQ(shot.bodies[0].pins[0].keys.keys[1].value.translate, Vec3(7, 8, 9));
   EXPECT_EQ(shot.bodies[0].pins[0].keys.keys[1].value.scale, Vec3(1, 2, 5));
-  EXPECT_EQ(shot.lights[1].power, 3);
+  EXPECT_EQ(shot.lights[1].power.at(1), 3);
 }
 
 TEST_F(SetOverrides, MakeTablesThatAreNotThere) {

@@ -1,4 +1,5 @@
 #include "tests/tool/shot/shot_files.h"
+#include "tool/shot/keyed_look.h"
 #include "tool/shot/shot_load.h"
 
 namespace softreel {
@@ -28,11 +29,11 @@ TEST_F(WriteShot, KeepsEveryBitOfConvertedValues) {
     EXPECT_EQ(again.bodies[0].pins[0].keys.keys[i].value.pivot, keys[i].value.pivot);
     EXPECT_EQ(again.bodies[0].pins[0].keys.keys[i].ease, keys[i].ease);
   }
-  EXPECT_EQ(again.environment.rotation, shot.environment.rotation);
-  EXPECT_EQ(again.area_lights[0].u, shot.area_lights[0].u);
-  EXPECT_EQ(again.area_lights[0].v, shot.area_lights[0].v);
-  EXPECT_EQ(again.area_lights[0].radiance, shot.area_lights[0].radiance);
-  EXPECT_EQ(again.suns[0].direction, shot.suns[0].direction);
+  EXPECT_EQ(environment_at(again, 1).rotation, environment_at(shot, 1).rotation);
+  EXPECT_EQ(lights_at(again, 1).lamps[0].u, lights_at(shot, 1).lamps[0].u);
+  EXPECT_EQ(lights_at(again, 1).lamps[0].v, lights_at(shot, 1).lamps[0].v);
+  EXPECT_EQ(lights_at(again, 1).lamps[0].radiance, lights_at(shot, 1).lamps[0].radiance);
+  EXPECT_EQ(lights_at(again, 1).suns[0].direction, lights_at(shot, 1).suns[0].direction);
   EXPECT_EQ(again.materials.at("rubber").appearance.base_color, shot.materials.at("rubber").appearance.base_color);
 }
 

@@ -60,6 +60,23 @@ TEST(CameraAt, FollowsItsKeys) {
   EXPECT_NEAR(camera_at(settings, 6, {}, 1).position.x(), 5, 1e-6);
 }
 
+TEST(CameraMotionAt, IsTheCameraAtTheTimesOfTheShutter) {
+  CameraSettings settings = framing(0, 0, 1);
+  settings.mode = CameraMode::Place;
+  settings.position.keys = {{1, Vec3(0, 0, 4), Ease::Linear}, {11, Vec3(10, 0, 4), Ease::Linear}};
+  settings.target.keys = {{1, Vec3(0, 0, 0), Ease::Linear}};
+  RenderSettings render;
+  render.blur_segments = 2;
+  EXPECT_TRUE(camera_motion_at(settings, render, 6, {}, 1).empty()) << "no shutter";
+  render.shutter = 0.5;
+  const std::vector<Camera> cameras = camera_motion_at(settings, render, 6, {}, 1);
+  ASSERT_EQ(cameras.size(), 3u);
+  EXPECT_NEAR(cameras[0].position.x(), 4.5, 1e-6);
+  EXPECT_NEAR(cameras[1].position.x(), 4.75, 1e-6);
+  EXPECT_EQ(cameras[2], camera_at(settings, 6, {}, 1));
+  EXPECT_TRUE(camera_motion_at(settings, render, 30, {}, 1).empty()) << "it stands";
+}
+
 TEST(PositionsBetween, LieOnTheLinesBetweenSubSteps) {
   const std::vector<Vec3> a{Vec3(0, 0, 0)}, b{Vec3(2, 0, 0)}, c{Vec3(2, 6, 0)};
   const std::vector<const std::vector<Vec3>*> steps{&a, &b, &c};

@@ -1,0 +1,34 @@
+/// The rays of a picture, to be shot again with nothing else around them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "render/pathtrace/ray_scene.h"
+
+namespace softreel {
+
+/// Passes all calls on and keeps the rays, in their order. One thread only.
+class RecordingScene : public RayScene {
+ public:
+  explicit RecordingScene(std::unique_ptr<RayScene> rays) : rays_(std::move(rays)) {}
+
+  void build(const std::vector<const MotionMesh*>& meshes) override { rays_->build(meshes); }
+  bool intersect(const Ray& ray, RayHit& hit, bool coherent) const override;
+  bool occluded(const Ray& ray, bool coherent) const override;
+
+  std::size_t count() const { return recorded_.size(); }
+  /// Shoots all of them, in their order; returns how many hit something.
+  std::int64_t shoot_again(const Threads& threads) const;
+
+ private:
+  struct Recorded {
+    Ray ray;
+    bool shadow, coherent;
+  };
+  std::unique_ptr<RayScene> rays_;
+  mutable std::vector<Recorded> recorded_;
+};
+
+}  // namespace softreel
