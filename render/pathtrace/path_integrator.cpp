@@ -16,7 +16,16 @@ constexpr std::size_t kFewLights = 4;
 constexpr std::uint32_t kLeavingBlocks = 1u << 16;
 
 /// Dimensions of a scattering event's block.
-enum Dimension : std::size_t { kLightU = 0, kLightV = 1, kBsdfU = 2, kBsdfV = 3, kLobe = 4, kLight = 5, kRoulette = 6 };
+enum Dimension : std::size_t {
+  kLightU = 0,
+  kLightV = 1,
+  kBsdfU = 2,
+  kBsdfV = 3,
+  kLobe = 4,
+  kLight = 5,
+  kRoulette = 6,
+  kLength = 7
+};
 
 }  // namespace
 
@@ -108,10 +117,12 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   const Vec3f inward = -cosine_hemisphere(Vec2f(numbers[kBsdfU], numbers[kBsdfV]));
   ray.direction = ShadingFrame(point.geometric_normal).to_world(inward);
   const SampleBlock leaving_numbers = sampler_.numbers(sample_, kLeavingBlocks + static_cast<std::uint32_t>(bounces_));
-  RandomStream stream(std::uint64_t{std::bit_cast<std::uint32_t>(leaving_numbers[kLight])} << 32 |
-                      std::bit_cast<std::uint32_t>(leaving_numbers[kRoulette]));
+  RandomStream stream(std::uint64_t{std::bit_cast<std::uint32_t>(leaving_numbers[kRoulette])} << 32 |
+                      std::bit_cast<std::uint32_t>(leaving_numbers[kBsdfU]));
+  const WalkStart start{ray, throughput_.cwiseProduct(bsdf.subsurface().color), leaving_numbers[kLobe],
+                        leaving_numbers[kLength]};
   WalkExit exit;
-  if (!random_walk(*picture_.rays, mesh_, medium_of(bsdf.subsurface()), ray, stream, exit)) return false;
+  if (!random_walk(*picture_.rays, mesh_, medium_of(bsdf.subsurface()), start, stream, exit)) return false;
   throughput_ = throughput_.cwiseProduct(exit.weight);
   // Seen from outside: the ray that would come in where the walk goes out.
   Ray seen = exit.ray;

@@ -30,24 +30,23 @@ Vec3f scattered(const Vec3f& direction, float g, const Vec2f& u) {
   return frame.to_world(Vec3f(sine * std::cos(angle), sine * std::sin(angle), cosine)).normalized();
 }
 
-/// The channel to draw for.
-int chosen_channel(const Vec3f& chance, float u) {
-  if (u < chance[0]) return 0;
-  return u < chance[0] + chance[1] ? 1 : 2;
-}
-
 /// One walk in the making.
 class Walk {
  public:
-  Walk(const RayScene& rays, Index mesh, const ScatteringMedium& medium, const Ray& entry, RandomStream& numbers)
-      : rays_(rays), mesh_(mesh), medium_(medium), numbers_(numbers), ray_(entry) {}
+  Walk(const RayScene& rays, Index mesh, const ScatteringMedium& medium, const WalkStart& start, RandomStream& numbers)
+      : rays_(rays), mesh_(mesh), medium_(medium), numbers_(numbers), ray_(start.ray) {
+    chance_ = start.importance / start.importance.sum();
+    channel_ = start.choice < chance_[0] ? 0 : start.choice < chance_[0] + chance_[1] ? 1 : 2;
+    if (!(chance_[channel_] > 0)) chance_.maxCoeff(&channel_);  // the rounding of the sum
+  }
 
-  bool run(WalkExit& exit) {
+  bool run(float first, WalkExit& exit) {
     for (int step = 0; step < kMostSteps; ++step) {
       bool left = false;
-      if (!fly(left)) return false;
+      if (!fly(step == 0 ? first : numbers_.next(), left)) return false;
       if (left) return finish(exit);
-      if (step >= kRouletteStart && !survives()) return false;
+      scattered_ = scattered_.cwiseProduct(medium_.albedo);
+      if (!survives(step)) return false;
       ray_.direction = scattered(ray_.direction, medium_.anisotropy, Vec2f(numbers_.next(), numbers_.next()));
     }
     ray_.max_distance = std::numeric_limits<float>::infinity();
@@ -56,24 +55,17 @@ class Walk {
   }
 
  private:
-  /// To the next collision, or out; false if nothing is carried on.
-  bool fly(bool& left) {
-    Vec3f chance = weight_.cwiseProduct(medium_.albedo);
-    const float sum = chance.sum();
-    if (!(sum > 0)) return false;
-    chance /= sum;
-    const int channel = chosen_channel(chance, numbers_.next());
-    const float length = -std::log1p(-numbers_.next()) / medium_.extinction[channel];
+  /// To the next collision, or out; false if the mesh is broken.
+  bool fly(float u, bool& left) {
+    const float length = -std::log1p(-u) / medium_.extinction[channel_];
     ray_.max_distance = length;
     travelled_ = 0;
     if (!reach_surface(left)) return false;
     const float distance = left ? travelled_ : length;
-    const Vec3f passed = (-distance * medium_.extinction).array().exp().matrix();
-    const Vec3f density = left ? passed : Vec3f(passed.cwiseProduct(medium_.extinction));
-    const float pdf = chance.dot(density);
-    if (!(pdf > 0)) return false;
-    weight_ = weight_.cwiseProduct(density) / pdf;
-    if (!left) weight_ = weight_.cwiseProduct(medium_.albedo);
+    const Vec3f more = medium_.extinction - Vec3f::Constant(medium_.extinction[channel_]);
+    ratio_ = ratio_.cwiseProduct((-distance * more).array().exp().matrix());
+    if (!left) ratio_ = ratio_.cwiseProduct(medium_.extinction / medium_.extinction[channel_]);
+    ratio_ = (ratio_.array() < 1e-20f).select(0.0f, ratio_);
     return true;
   }
 
@@ -103,15 +95,18 @@ class Walk {
     return false;
   }
 
-  bool survives() {
-    const float chance = std::min(1.0f, weight_.maxCoeff());
+  bool survives(int step) {
+    const float carried = scattered_.cwiseProduct(ratio_).maxCoeff();
+    if (!(carried > 0)) return false;
+    if (step < kRouletteStart) return true;
+    const float chance = std::min(1.0f, carried / ratio_.maxCoeff());
     if (numbers_.next() >= chance) return false;
-    weight_ /= chance;
+    scattered_ /= chance;
     return true;
   }
 
   bool finish(WalkExit& exit) const {
-    exit = {hit_, ray_, weight_};
+    exit = {hit_, ray_, scattered_.cwiseProduct(ratio_) / chance_.dot(ratio_)};
     return true;
   }
 
@@ -121,12 +116,22 @@ class Walk {
   RandomStream& numbers_;
   Ray ray_;
   RayHit hit_;
-  int depth_ = 1;        ///< solids around the point
-  float travelled_ = 0;  ///< m, of this flight up to its last surface
-  Vec3f weight_ = Vec3f::Ones();
+  int depth_ = 1;                    ///< solids around the point
+  float travelled_ = 0;              ///< m, of this flight up to its last surface
+  Vec3f chance_;                     ///< of each channel to be the one that sets lengths
+  Index channel_ = 0;                ///< the one that does
+  Vec3f ratio_ = Vec3f::Ones();      ///< density of this walk, had a channel set its lengths, over what it is
+  Vec3f scattered_ = Vec3f::Ones();  ///< product of the albedos
 };
 
 }  // namespace
+
+RandomStream::RandomStream(std::uint64_t seed) {
+  // The finaliser of SplitMix64 (Steele, Lea and Flood 2014): near seeds give streams that have nothing in common.
+  seed = (seed ^ (seed >> 30)) * 0xbf58476d1ce4e5b9u;
+  seed = (seed ^ (seed >> 27)) * 0x94d049bb133111ebu;
+  state_ = seed ^ (seed >> 31);
+}
 
 std::uint32_t RandomStream::step() {
   const std::uint64_t old = state_;
@@ -158,9 +163,10 @@ ScatteringMedium medium_of(const Subsurface& subsurface) {
   return medium;
 }
 
-bool random_walk(const RayScene& rays, Index mesh, const ScatteringMedium& medium, const Ray& entry,
+bool random_walk(const RayScene& rays, Index mesh, const ScatteringMedium& medium, const WalkStart& start,
                  RandomStream& numbers, WalkExit& exit) {
-  return Walk(rays, mesh, medium, entry, numbers).run(exit);
+  if (!(start.importance.sum() > 0)) return false;
+  return Walk(rays, mesh, medium, start, numbers).run(start.first, exit);
 }
 
 }  // namespace softreel

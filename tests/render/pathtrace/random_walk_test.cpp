@@ -42,11 +42,13 @@ SlabLight light_of(const Slab& slab, const ScatteringMedium& medium, int walks) 
   for (int k = 0; k < walks; ++k) {
     const float a = numbers.next(), b = numbers.next();
     const Vec3f down = -cosine_hemisphere(Vec2f(a, b));
-    Ray entry;
-    entry.origin = Vec3f(0, -1e-6f, 0);
-    entry.direction = Vec3f(down.x(), down.z(), down.y());
+    WalkStart start;
+    start.ray.origin = Vec3f(0, -1e-6f, 0);
+    start.ray.direction = Vec3f(down.x(), down.z(), down.y());
+    start.choice = numbers.next();
+    start.first = numbers.next();
     WalkExit exit;
-    if (!random_walk(slab, 0, medium, entry, numbers, exit)) continue;
+    if (!random_walk(slab, 0, medium, start, numbers, exit)) continue;
     const Eigen::Vector3d weight = exit.weight.cast<double>() / walks;
     if (exit.ray.direction.y() < 0) {
       light.transmitted += weight;
