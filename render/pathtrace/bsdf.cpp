@@ -6,116 +6,21 @@ namespace softreel {
 
 namespace {
 
-/// Lobes of this alpha (roughness 0.32) and more are wide.
-constexpr float kWideAlpha = 0.1f;
-
-/// Mean of part(h) over the normals h visible from a cosine; part gives two numbers.
-///
-/// GGX has heavy tails, which lie at the rim of the disk that visible normals come from: rings are spaced evenly in
-/// v = (1 - r^2)^(1/4), where they are wide enough for few points: 2 r dr = 4 v^3 dv. Half the circle mirrors the
-/// other.
-template <typename Part>
-Vec2f mean_over_normals(float cosine, float alpha, const Part& part) {
-  constexpr int kRings = 32, kAngles = 24;
-  const float mu = std::max(cosine, 1e-4f);
-  const Vec3f o(std::sqrt(std::max(0.0f, 1 - mu * mu)), 0, mu);
-  Vec2f sum = Vec2f::Zero();
-  for (int ring = 0; ring < kRings; ++ring) {
-    const float v = (static_cast<float>(ring) + 0.5f) / kRings, v2 = v * v;
-    const float radius = std::sqrt(1 - v2 * v2);
-    for (int k = 0; k < kAngles; ++k) {
-      const float angle = kPi * ((static_cast<float>(k) + 0.5f) / kAngles - 0.5f);
-      const Vec3f h = visible_normal(o, alpha, radius * Vec2f(std::cos(angle), std::sin(angle)));
-      sum += 4 * v2 * v * part(o, h);
-    }
-  }
-  return sum / (kRings * kAngles);
-}
-
 /// Sampling weight G2 / G1 of a direction with cosine `cos_i`, which may be on either side.
 float shadowing_weight(const Vec3f& o, float cos_i, float alpha) {
   return ggx_shadowing(o.z(), std::abs(cos_i), alpha) / ggx_masking(o.z(), alpha);
 }
 
-/// What a reflection returns: of reflectance 1 - (1 - c)^5, and of (1 - c)^5.
-Vec2f reflection_albedo(float cosine, float alpha) {
-  return mean_over_normals(cosine, alpha, [alpha](const Vec3f& o, const Vec3f& h) -> Vec2f {
-    const float cos_d = o.dot(h), cos_i = 2 * cos_d * h.z() - o.z();
-    if (cos_i <= 0) return Vec2f::Zero();
-    const float rim = schlick_weight(cos_d);
-    return shadowing_weight(o, cos_i, alpha) * Vec2f(1 - rim, rim);
-  });
-}
-
-/// What rough glass reflects and lets through.
-Vec2f glass_albedo(float cosine, float alpha, float eta) {
-  return mean_over_normals(cosine, alpha, [alpha, eta](const Vec3f& o, const Vec3f& h) -> Vec2f {
-    const float cos_d = o.dot(h), cos_i = 2 * cos_d * h.z() - o.z();
-    const float fresnel = fresnel_dielectric(cos_d, eta);
-    Vec2f part = Vec2f::Zero();
-    if (cos_i > 0) part.x() = fresnel * shadowing_weight(o, cos_i, alpha);
-    Vec3f t;
-    if (refract(o, h, eta, t) && t.z() < 0) part.y() = (1 - fresnel) * shadowing_weight(o, t.z(), alpha);
-    return part;
-  });
-}
-
 }  // namespace
-
-template <typename At>
-void AlbedoTable::fill(const At& albedo_at) {
-  for (int k = 0; k <= kIntervals; ++k) {
-    const float s = static_cast<float>(k) / kIntervals;
-    knots_[static_cast<std::size_t>(k)] = albedo_at(s * s);
-  }
-  // at() is linear in s = sqrt(mu): the mean of 2 mu dmu = 4 s^3 ds by midpoints of a finer grid.
-  constexpr int kSteps = 16 * kIntervals;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (int k = 0; k < kSteps; ++k) {
-    const double s = (k + 0.5) / kSteps;
-    sum += 4 * s * s * s * at(static_cast<float>(s * s)).cast<double>();
-  }
-  mean_ = (sum / kSteps).cast<float>();
-}
-
-AlbedoTable AlbedoTable::of_reflection(float alpha) {
-  AlbedoTable table;
-  if (alpha < kSmoothAlpha)
-    table.fill([](float mu) { return Vec2f(1 - schlick_weight(mu), schlick_weight(mu)); });
-  else
-    table.fill([alpha](float mu) { return reflection_albedo(mu, alpha); });
-  return table;
-}
-
-AlbedoTable AlbedoTable::of_glass(float alpha, float eta) {
-  AlbedoTable table;
-  if (alpha < kSmoothAlpha)
-    table.fill([eta](float mu) { return Vec2f(fresnel_dielectric(mu, eta), 1 - fresnel_dielectric(mu, eta)); });
-  else
-    table.fill([alpha, eta](float mu) { return glass_albedo(mu, alpha, eta); });
-  return table;
-}
-
-Vec2f AlbedoTable::at(float cosine) const {
-  const float s = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * kIntervals;
-  const int k = std::min(static_cast<int>(s), kIntervals - 1);
-  const float t = s - static_cast<float>(k);
-  const auto i = static_cast<std::size_t>(k);
-  return (1 - t) * knots_[i] + t * knots_[i + 1];
-}
-
-AlbedoTable AlbedoTable::between(const AlbedoTable& a, const AlbedoTable& b, float share) {
-  AlbedoTable table;
-  for (std::size_t k = 0; k < a.knots_.size(); ++k) table.knots_[k] = a.knots_[k] + share * (b.knots_[k] - a.knots_[k]);
-  table.mean_ = a.mean_ + share * (b.mean_ - a.mean_);
-  return table;
-}
 
 AlbedoTables AlbedoTables::of(const Appearance& appearance) {
   AlbedoTables tables;
+  tables.top = TopLayers::make(appearance);
   const float alpha = appearance.roughness * appearance.roughness;
   const bool glass = (1 - appearance.metallic) * appearance.transmission > 0;
-  if (glass || appearance.specular > 0 || appearance.metallic > 0)
+  if (tables.top)
+    tables.reflection = AlbedoTable::of_reflection(alpha, [&](float mu) { return tables.top->passed(mu); });
+  else if (glass || appearance.specular > 0 || appearance.metallic > 0 || appearance.subsurface > 0)
     tables.reflection = AlbedoTable::of_reflection(alpha);
   if (glass) {
     tables.glass_outside = AlbedoTable::of_glass(alpha, appearance.ior);
@@ -127,59 +32,80 @@ AlbedoTables AlbedoTables::of(const Appearance& appearance) {
 AlbedoTables AlbedoTables::between(const AlbedoTables& a, const AlbedoTables& b, float share) {
   return {AlbedoTable::between(a.reflection, b.reflection, share),
           AlbedoTable::between(a.glass_outside, b.glass_outside, share),
-          AlbedoTable::between(a.glass_inside, b.glass_inside, share)};
+          AlbedoTable::between(a.glass_inside, b.glass_inside, share), a.top};
 }
 
 Bsdf::Bsdf(const Appearance& appearance, const AlbedoTables& tables)
     : alpha_(appearance.roughness * appearance.roughness),
       mirror_(alpha_ < kSmoothAlpha),
+      glass_((1 - appearance.metallic) * appearance.transmission),
       ior_(appearance.ior),
+      dielectric_f0_(0.08f * appearance.specular),
       absorption_(appearance.absorption),
       emission_(appearance.emission),
       albedo_(appearance.base_color),
+      inside_{appearance.base_color, appearance.subsurface_scale * appearance.subsurface_radius,
+              appearance.subsurface_anisotropy},
       ggx_albedo_(tables.reflection),
       glass_outside_(tables.glass_outside),
-      glass_inside_(tables.glass_inside) {
+      glass_inside_(tables.glass_inside),
+      top_(tables.top) {
   const float metal = appearance.metallic;
-  glass_ = (1 - metal) * appearance.transmission;
   const float base = (1 - metal) * (1 - appearance.transmission);
-  coat_f0_ = 0.08f * appearance.specular;
-  const bool coated = coat_f0_ > 0;
-  f0_ = metal * appearance.base_color + Vec3f::Constant(base * coat_f0_);
+  const bool coated = dielectric_f0_ > 0;
+  f0_ = metal * appearance.base_color + Vec3f::Constant(base * dielectric_f0_);
   f90_ = Vec3f::Constant(metal + (coated ? base : 0.0f));
-  diffuse_ = base * appearance.base_color;
-  lambertian_ = !coated && metal == 0 && glass_ == 0;
+  subsurface_ = base * appearance.subsurface;
+  diffuse_from_behind_ = base * appearance.base_color;
+  diffuse_ = (1 - appearance.subsurface) * diffuse_from_behind_;
+  lambertian_ = !coated && metal == 0 && glass_ == 0 && subsurface_ == 0 && !top_;
   const Vec2f mean = ggx_albedo_.mean();
-  if (coated) coat_scale_ = 1 / (1 - (coat_f0_ * mean.x() + mean.y()));
-  if (metal > 0) {
-    // Kulla and Conty: light that leaves after several reflections, coloured once more by each.
-    const float once = mean.x() + mean.y();
-    const Vec3f f_mean = appearance.base_color + (Vec3f::Ones() - appearance.base_color) / 21;
-    const Vec3f f_return = (f_mean.array().square() * once / (1 - f_mean.array() * (1 - once))).matrix();
-    if (once < 1 - 1e-5f) metal_return_ = metal / (1 - once) * f_return;
-  }
-  diffuse_or_metal_ = diffuse_.maxCoeff() > 0 || metal_return_.maxCoeff() > 0;
+  if (coated || top_) diffuse_scale_ = 1 / (mean_passed() - (dielectric_f0_ * mean.x() + (coated ? mean.y() : 0.0f)));
+  if (metal > 0) prepare_metal(appearance);
+  has_cosine_lobe_ = diffuse_from_behind_.maxCoeff() > 0 || metal_return_.maxCoeff() > 0;
 }
 
-Bsdf::Shares Bsdf::shares(const Vec2f& e) const {
+/// Kulla and Conty: light that leaves after several reflections, coloured once more by each.
+void Bsdf::prepare_metal(const Appearance& appearance) {
+  const float lost = mean_passed() - ggx_albedo_.mean().sum();
+  if (lost <= 1e-5f) return;
+  const float once = ggx_albedo_.mean().sum() / mean_passed();
+  const Vec3f f_mean = appearance.base_color + (Vec3f::Ones() - appearance.base_color) / 21;
+  const Vec3f f_return = (f_mean.array().square() * once / (1 - f_mean.array() * (1 - once))).matrix();
+  metal_return_ = appearance.metallic / lost * f_return;
+}
+
+float Bsdf::diffuse_passed(float cosine, const Vec2f& e) const {
+  return passed(cosine) - (dielectric_f0_ * e.x() + (dielectric_f0_ > 0 ? e.y() : 0.0f));
+}
+
+Bsdf::Shares Bsdf::shares(float cosine, bool inside) const {
+  const Vec2f e = ggx_albedo_.at(cosine);
+  const float past = diffuse_passed(cosine, e);
   const float reflected = (f0_ * e.x() + f90_ * e.y()).maxCoeff();
-  const float under_coat = diffuse_.maxCoeff() * (1 - (coat_f0_ * e.x() + (coat_f0_ > 0 ? e.y() : 0.0f)));
-  const float returned = metal_return_.maxCoeff() * (1 - (e.x() + e.y())) * (1 - ggx_albedo_.mean().sum());
-  const float cosine = diffuse_or_metal_ ? under_coat + std::max(0.0f, returned) : 0.0f;
-  const float total = reflected + cosine + glass_;
+  const float under = diffuse(inside).maxCoeff() * past;
+  const float returned =
+      metal_return_.maxCoeff() * (passed(cosine) - (e.x() + e.y())) * (mean_passed() - ggx_albedo_.mean().sum());
+  Shares p;
+  p.reflection = reflected;
+  p.cosine = has_cosine_lobe_ ? under + std::max(0.0f, returned) : 0.0f;
+  p.glass = top_ ? glass_ * passed(cosine) : glass_;
+  p.subsurface = inside ? 0.0f : subsurface_ * past * inside_.color.maxCoeff();
+  if (top_) {
+    p.sheen = top_->sheen_share(cosine);
+    p.coat = top_->coat_share(cosine);
+  }
+  const float total = p.reflection + p.cosine + p.glass + (p.subsurface + p.sheen + p.coat);
   if (!(total > 0)) return {};
-  return {reflected / total, cosine / total, glass_ / total};
+  for (float* share : {&p.sheen, &p.coat, &p.reflection, &p.cosine, &p.subsurface, &p.glass}) *share /= total;
+  return p;
 }
 
-Vec3f Bsdf::cosine_lobe(float cos_o, float cos_i) const {
+Vec3f Bsdf::cosine_lobe(float cos_o, float cos_i, bool inside) const {
   constexpr float kInvPi = 1 / kPi;
-  if (lambertian_) return diffuse_ * (cos_i * kInvPi);
   const Vec2f eo = ggx_albedo_.at(cos_o), ei = ggx_albedo_.at(cos_i);
-  Vec3f sum = metal_return_ * ((1 - eo.sum()) * (1 - ei.sum()));
-  if (coat_f0_ > 0)
-    sum += diffuse_ * (coat_scale_ * (1 - (coat_f0_ * eo.x() + eo.y())) * (1 - (coat_f0_ * ei.x() + ei.y())));
-  else
-    sum += diffuse_;
+  Vec3f sum = metal_return_ * ((passed(cos_o) - eo.sum()) * (passed(cos_i) - ei.sum()));
+  sum += diffuse(inside) * (diffuse_scale_ * diffuse_passed(cos_o, eo) * diffuse_passed(cos_i, ei));
   return sum * (cos_i * kInvPi);
 }
 
@@ -189,7 +115,8 @@ void Bsdf::add_reflection(const Vec3f& o, const Vec3f& i, float share, BsdfValue
   const float distribution = ggx_distribution(h.z(), alpha_);
   const float lambda_o = ggx_lambda(o.z(), alpha_), lambda_i = ggx_lambda(i.z(), alpha_);
   const float common = distribution / (4 * o.z());
-  sum.value += reflectance(cos_d) * (common / (1 + lambda_o + lambda_i));
+  const float seen = top_ ? std::min(passed(o.z()), passed(i.z())) : 1.0f;
+  sum.value += reflectance(cos_d) * (seen * common / (1 + lambda_o + lambda_i));
   sum.pdf += share * common / (1 + lambda_o);
 }
 
@@ -210,8 +137,27 @@ void Bsdf::add_glass(const Vec3f& o, const Vec3f& i, bool inside, float share, B
   const float denominator = i_h + o_h / eta;
   const float pdf =
       reflected ? fresnel * visible / (4 * o_h) : (1 - fresnel) * visible * std::abs(i_h) / (denominator * denominator);
-  sum.value += Vec3f::Constant(glass_ * pdf * shadowing_weight(o, i.z(), alpha_) / kept);
+  sum.value += Vec3f::Constant(glass_ * passed(o.z()) * pdf * shadowing_weight(o, i.z(), alpha_) / kept);
   sum.pdf += share * pdf;
+}
+
+BsdfValue Bsdf::evaluate_leaving(const Vec3f& i) const {
+  if (i.z() <= 0) return {};
+  const float density = i.z() / kPi;
+  const float passed_out = diffuse_scale_ * diffuse_passed(i.z(), ggx_albedo_.at(i.z()));
+  const Vec3f tint = top_ ? top_->tint(i.z()) : Vec3f(Vec3f::Ones());
+  return {tint * (passed_out * density), density};
+}
+
+void Bsdf::add_base(const Vec3f& o, const Vec3f& i, bool inside, const Shares& p, BsdfValue& sum) const {
+  if (i.z() > 0) {
+    if (has_cosine_lobe_) {
+      sum.value += cosine_lobe(o.z(), i.z(), inside);
+      sum.pdf += p.cosine * i.z() / kPi;
+    }
+    if (!mirror_ && p.reflection > 0) add_reflection(o, i, p.reflection, sum);
+  }
+  if (glass_ > 0 && !mirror_ && i.z() != 0) add_glass(o, i, inside, p.glass, sum);
 }
 
 BsdfValue Bsdf::evaluate(const Vec3f& o, const Vec3f& i, bool inside) const {
@@ -220,26 +166,26 @@ BsdfValue Bsdf::evaluate(const Vec3f& o, const Vec3f& i, bool inside) const {
     if (i.z() <= 0) return sum;
     return {diffuse_ * (i.z() / kPi), i.z() / kPi};
   }
-  const Shares p = shares(ggx_albedo_.at(o.z()));
-  if (i.z() > 0) {
-    if (diffuse_or_metal_) {
-      sum.value += cosine_lobe(o.z(), i.z());
-      sum.pdf += p.cosine * i.z() / kPi;
-    }
-    if (!mirror_ && p.reflection > 0) add_reflection(o, i, p.reflection, sum);
-  }
-  if (glass_ > 0 && !mirror_ && i.z() != 0) add_glass(o, i, inside, p.glass, sum);
+  const Shares p = shares(o.z(), inside);
+  add_base(o, i, inside, p, sum);
+  if (!top_) return sum;
+  sum.value = sum.value.cwiseProduct(top_->tint(o.z()));
+  if (i.z() <= 0) return sum;
+  sum.value = sum.value.cwiseProduct(top_->tint(i.z()));
+  top_->add(o, i, p.sheen, p.coat, sum);
   return sum;
 }
 
-bool Bsdf::sample_mirror_glass(const Vec3f& o, float u, float eta, BsdfSample& sample) const {
+Bsdf::Drawn Bsdf::draw_mirror_glass(const Vec3f& o, float u, float eta, float share, BsdfSample& sample) const {
   sample.mirror = true;
-  sample.weight = Vec3f::Ones();
-  if (u < fresnel_dielectric(o.z(), eta)) {
-    sample.direction = Vec3f(-o.x(), -o.y(), o.z());
-    return true;
-  }
-  return refract(o, Vec3f(0, 0, 1), eta, sample.direction);
+  sample.weight = Vec3f::Constant(glass_ * passed(o.z()) / share);
+  if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(o.z()));
+  sample.pdf = 0;
+  if (u >= fresnel_dielectric(o.z(), eta))
+    return refract(o, Vec3f(0, 0, 1), eta, sample.direction) ? Drawn::Whole : Drawn::Nothing;
+  sample.direction = Vec3f(-o.x(), -o.y(), o.z());
+  if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(o.z()));
+  return Drawn::Whole;
 }
 
 /// Zero if the facet sends the light to the wrong side of the surface.
@@ -254,9 +200,63 @@ Vec3f Bsdf::sample_rough_glass(const Vec3f& o, float u_side, const Vec2f& u, flo
   return refract(o, h, eta, i) && i.z() < 0 ? i : Vec3f::Zero();
 }
 
-bool Bsdf::sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfSample& sample) const {
-  sample.mirror = false;
+Bsdf::Drawn Bsdf::draw_reflection(const Vec3f& o, const Vec2f& u, float share, BsdfSample& sample) const {
+  if (mirror_) {
+    sample.direction = Vec3f(-o.x(), -o.y(), o.z());
+    sample.weight = reflectance(o.z()) * passed(o.z()) / share;
+    if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(o.z()).array().square().matrix());
+    sample.mirror = true;
+    sample.pdf = 0;
+    return Drawn::Whole;
+  }
+  const Vec3f h = sample_visible_normal(o, alpha_, u);
+  sample.direction = 2 * o.dot(h) * h - o;
+  return sample.direction.z() > 0 ? Drawn::Direction : Drawn::Nothing;
+}
+
+Bsdf::Drawn Bsdf::draw_layer(const Vec3f& o, float lobe, const Vec2f& u, const Shares& p, BsdfSample& sample) const {
+  sample.wide = true;
+  if (lobe < p.sheen) {
+    sample.direction = TopLayers::sample_sheen(u);
+    return sample.direction.z() > 0 ? Drawn::Direction : Drawn::Nothing;
+  }
+  if (lobe < p.sheen + p.subsurface) {
+    // Enters as it would leave: evenly over the projected hemisphere.
+    sample.direction = -cosine_hemisphere(u);
+    sample.weight = Vec3f::Constant(subsurface_ * diffuse_passed(o.z(), ggx_albedo_.at(o.z())) / p.subsurface);
+    if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(o.z()));
+    sample.subsurface = true;
+    sample.pdf = 0;
+    return Drawn::Whole;
+  }
+  sample.wide = top_->wide_coat();
+  if (!top_->mirror_coat()) return top_->sample_coat(o, u, sample.direction) ? Drawn::Direction : Drawn::Nothing;
+  sample.direction = Vec3f(-o.x(), -o.y(), o.z());
+  sample.weight = Vec3f::Constant(top_->coat_share(o.z()) / p.coat);
+  sample.mirror = true;
+  sample.pdf = 0;
+  return Drawn::Whole;
+}
+
+Bsdf::Drawn Bsdf::draw_base(const Vec3f& o, float lobe, const Vec2f& u, bool inside, const Shares& p,
+                            BsdfSample& sample) const {
   sample.wide = alpha_ >= kWideAlpha;
+  if (lobe < p.cosine) {
+    sample.direction = cosine_hemisphere(u);
+    sample.wide = true;
+    return Drawn::Direction;
+  }
+  if (lobe < p.cosine + p.reflection) return draw_reflection(o, u, p.reflection, sample);
+  if (!(p.glass > 0)) return Drawn::Nothing;
+  const float eta = inside ? 1 / ior_ : ior_;
+  const float side = std::clamp((lobe - p.cosine - p.reflection) / p.glass, 0.0f, 0x1.fffffep-1f);
+  if (mirror_) return draw_mirror_glass(o, side, eta, p.glass, sample);
+  sample.direction = sample_rough_glass(o, side, u, eta);
+  return sample.direction.z() != 0 ? Drawn::Direction : Drawn::Nothing;
+}
+
+bool Bsdf::sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfSample& sample) const {
+  sample.mirror = sample.subsurface = false;
   if (lambertian_) {
     sample.direction = cosine_hemisphere(u);
     sample.weight = diffuse_;
@@ -264,35 +264,11 @@ bool Bsdf::sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfS
     sample.wide = true;
     return sample.pdf > 0;
   }
-  const Shares p = shares(ggx_albedo_.at(o.z()));
-  if (lobe < p.cosine) {
-    sample.direction = cosine_hemisphere(u);
-    sample.wide = true;
-  } else if (lobe < p.cosine + p.reflection) {
-    if (mirror_) {
-      sample.direction = Vec3f(-o.x(), -o.y(), o.z());
-      sample.weight = reflectance(o.z()) / p.reflection;
-      sample.mirror = true;
-      sample.pdf = 0;
-      return true;
-    }
-    const Vec3f h = sample_visible_normal(o, alpha_, u);
-    sample.direction = 2 * o.dot(h) * h - o;
-    if (sample.direction.z() <= 0) return false;
-  } else if (p.glass > 0) {
-    const float eta = inside ? 1 / ior_ : ior_;
-    const float side = std::clamp((lobe - p.cosine - p.reflection) / p.glass, 0.0f, 0x1.fffffep-1f);
-    if (mirror_) {
-      if (!sample_mirror_glass(o, side, eta, sample)) return false;
-      sample.weight = Vec3f::Constant(glass_ / p.glass);
-      sample.pdf = 0;
-      return true;
-    }
-    sample.direction = sample_rough_glass(o, side, u, eta);
-    if (sample.direction.z() == 0) return false;
-  } else {
-    return false;
-  }
+  const Shares p = shares(o.z(), inside);
+  const float layers = p.sheen + p.subsurface + p.coat;
+  const Drawn drawn =
+      lobe < layers ? draw_layer(o, lobe, u, p, sample) : draw_base(o, lobe - layers, u, inside, p, sample);
+  if (drawn != Drawn::Direction) return drawn == Drawn::Whole;
   const BsdfValue value = evaluate(o, sample.direction, inside);
   if (!(value.pdf > 0)) return false;
   sample.pdf = value.pdf;

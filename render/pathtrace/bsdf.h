@@ -1,75 +1,50 @@
-/// The scattering function of an Appearance: a mixture of diffuse, GGX reflection and glass.
+/// The scattering function of an Appearance: diffuse, GGX reflection and glass, under coat and sheen.
 ///
-/// Reflection. Coat (white-ish dielectric, weight of the base) and metal share the roughness, so one GGX lobe carries
-/// the sum of their Schlick reflectances. Light that a single reflection loses (metal) or lets through (coat) returns
-/// as a cosine-like lobe c (1 - E(o)) (1 - E(i)), with E the directional albedo: Kelemen and Szirmay-Kalos, A
-/// Microfacet Based Coupled Specular-Matte BRDF, 2001; Kulla and Conty, Revisiting Physically Based Shading at
-/// Imageworks, 2017. Both are reciprocal, and neither gains energy. Glass. Walter et al. 2007 with the true Fresnel
-/// term. It carries radiance over squared index, so that a path needs no factor on its way in and out. Rough glass
-/// loses what needs a second scattering at the surface.
+/// Reflection. Dielectric (white-ish, weight of the base) and metal share the roughness, so one GGX lobe carries
+/// the sum of their Schlick reflectances. Light that a single reflection loses (metal) or lets through (dielectric)
+/// returns as a cosine-like lobe c (1 - E(o)) (1 - E(i)), with E the directional albedo of all that is above: Kelemen
+/// and Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF, 2001; Kulla and Conty, Revisiting Physically
+/// Based Shading at Imageworks, 2017. Both are reciprocal, and neither gains energy. Glass. Walter et al. 2007 with the
+/// true Fresnel term. It carries radiance over squared index, so that a path needs no factor on its way in and out.
+/// What rough glass loses for want of a second scattering is given back in proportion, by its albedo seen from `o`
+/// (Turquin, Practical multiple scattering compensation for microfacet models, 2019), which is not reciprocal.
+/// Coat and sheen: top_layers.h; they lie on both sides.
 #pragma once
 
-#include <array>
+#include <memory>
 
+#include "render/pathtrace/albedo_table.h"
 #include "render/pathtrace/microfacet.h"
+#include "render/pathtrace/scattering.h"
+#include "render/pathtrace/top_layers.h"
 #include "render/scene/material.h"
 
 namespace softreel {
 
-/// Directional albedos of a GGX surface of one roughness, two numbers a cosine.
-class AlbedoTable {
- public:
-  /// Reflectance F0 at normal incidence gives F0 * x + y.
-  static AlbedoTable of_reflection(float alpha);
-  /// Shares of light that glass reflects and lets through; eta: index of the far side over that of the near side.
-  static AlbedoTable of_glass(float alpha, float eta);
-
-  /// At the cosine mu in [0, 1].
-  Vec2f at(float cosine) const;
-  /// Mean, weighted by 2 mu.
-  Vec2f mean() const { return mean_; }
-  /// share: 0 gives a, bit for bit.
-  static AlbedoTable between(const AlbedoTable& a, const AlbedoTable& b, float share);
-
- private:
-  template <typename At>
-  void fill(const At& albedo_at);
-
-  static constexpr int kIntervals = 32;
-  std::array<Vec2f, kIntervals + 1> knots_;  ///< at mu = (k / kIntervals)^2: dense where E bends, at grazing angles
-  Vec2f mean_ = Vec2f::Zero();
+/// The inside of a body that scatters light, as an artist gives it.
+struct Subsurface {
+  Vec3f color = Vec3f::Zero();   ///< diffuse albedo
+  Vec3f radius = Vec3f::Zero();  ///< m, scattering radius
+  float anisotropy = 0;          ///< mean cosine of a scattering
 };
 
-/// The tables of one appearance: all that is slow to prepare. They depend on roughness and index, not on colours.
+/// What of a material is slow to prepare. It depends on roughness, index and layers, not on the base's colour.
 struct AlbedoTables {
   AlbedoTable reflection;                   ///< filled unless the appearance is only diffuse
   AlbedoTable glass_outside, glass_inside;  ///< filled for glass
+  std::shared_ptr<const TopLayers> top;     ///< null: none
 
   static AlbedoTables of(const Appearance& appearance);
   /// Between those of two appearances that differ in roughness only. share: 0 gives a, bit for bit.
   static AlbedoTables between(const AlbedoTables& a, const AlbedoTables& b, float share);
 };
 
-/// f cos_i and the density of sample() for the same pair.
-struct BsdfValue {
-  Vec3f value = Vec3f::Zero();
-  float pdf = 0;
-};
-
-struct BsdfSample {
-  Vec3f direction;      ///< local
-  Vec3f weight;         ///< f cos_i / pdf
-  float pdf = 0;        ///< by solid angle; 0 if `mirror`
-  bool wide = false;    ///< of a lobe so wide that no details show through it
-  bool mirror = false;  ///< one of finitely many directions: no light sampling can find it
-};
-
 /// One prepared material. Directions are local, unit, and point away from the surface; `o` towards the viewer, on the
-/// side of +z. `inside`: +z is the inside of the glass.
+/// side of +z. `inside`: +z is the inside of the body.
 class Bsdf {
  public:
   explicit Bsdf(const Appearance& appearance) : Bsdf(appearance, AlbedoTables::of(appearance)) {}
-  /// Quick; tables: those of an appearance that differs in colours only, or between those of two neighbours.
+  /// Quick; tables: those of an appearance that differs in base colour only, or between those of two neighbours.
   Bsdf(const Appearance& appearance, const AlbedoTables& tables);
 
   BsdfValue evaluate(const Vec3f& o, const Vec3f& i, bool inside) const;
@@ -77,39 +52,64 @@ class Bsdf {
   bool sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfSample& sample) const;
 
   /// Whether evaluate() can be above 0, so that sampling lights makes sense.
-  bool has_smooth_part() const { return diffuse_or_metal_ || !mirror_; }
+  bool has_smooth_part() const { return has_cosine_lobe_ || !mirror_ || (top_ && top_->has_smooth_part()); }
   bool transmits() const { return glass_ > 0; }
   const Vec3f& absorption() const { return absorption_; }
   const Vec3f& emission() const { return emission_; }
   /// What the albedo channel shows.
   const Vec3f& albedo() const { return albedo_; }
 
+  /// How light that a `subsurface` sample took inside is scattered there. From behind such a surface is diffuse.
+  const Subsurface& subsurface() const { return inside_; }
+  /// How that light leaves where it comes out: value and density, by the cosine to the projected hemisphere, towards i.
+  BsdfValue evaluate_leaving(const Vec3f& i) const;
+
  private:
   /// Probabilities of sampling the lobes, as seen from one direction.
   struct Shares {
-    float reflection = 0, cosine = 0, glass = 0;
+    float sheen = 0, coat = 0, reflection = 0, cosine = 0, subsurface = 0, glass = 0;
   };
-  Shares shares(const Vec2f& e) const;
+  Shares shares(float cosine, bool inside) const;
+  void prepare_metal(const Appearance& appearance);
   Vec3f reflectance(float cosine) const { return f0_ + (f90_ - f0_) * schlick_weight(cosine); }
-  Vec3f cosine_lobe(float cos_o, float cos_i) const;
+  /// Of light that reaches the base; 1 without layers.
+  float passed(float cosine) const { return top_ ? top_->passed(cosine) : 1.0f; }
+  float mean_passed() const { return top_ ? top_->mean_passed() : 1.0f; }
+  /// Share of light that gets past all that is above the diffuse lobe; e: of ggx_albedo_.
+  float diffuse_passed(float cosine, const Vec2f& e) const;
+  const Vec3f& diffuse(bool inside) const { return inside ? diffuse_from_behind_ : diffuse_; }
+  Vec3f cosine_lobe(float cos_o, float cos_i, bool inside) const;
   void add_reflection(const Vec3f& o, const Vec3f& i, float share, BsdfValue& sum) const;
   void add_glass(const Vec3f& o, const Vec3f& i, bool inside, float share, BsdfValue& sum) const;
-  bool sample_mirror_glass(const Vec3f& o, float u, float eta, BsdfSample& sample) const;
+  void add_base(const Vec3f& o, const Vec3f& i, bool inside, const Shares& p, BsdfValue& sum) const;
+
+  /// What drawing a lobe has settled: nothing is carried, all of the sample, or its direction only.
+  enum class Drawn { Nothing, Whole, Direction };
+  /// Of the layers and of the subsurface lobe; lobe: below the sum of their shares.
+  Drawn draw_layer(const Vec3f& o, float lobe, const Vec2f& u, const Shares& p, BsdfSample& sample) const;
+  /// Of the base; lobe: from 0 on for these alone.
+  Drawn draw_base(const Vec3f& o, float lobe, const Vec2f& u, bool inside, const Shares& p, BsdfSample& sample) const;
+  Drawn draw_reflection(const Vec3f& o, const Vec2f& u, float share, BsdfSample& sample) const;
+  Drawn draw_mirror_glass(const Vec3f& o, float u, float eta, float share, BsdfSample& sample) const;
   Vec3f sample_rough_glass(const Vec3f& o, float u_side, const Vec2f& u, float eta) const;
 
   float alpha_;
-  bool mirror_;            ///< GGX and glass are perfectly smooth
-  bool lambertian_;        ///< only the diffuse lobe, without coat
-  bool diffuse_or_metal_;  ///< the cosine lobe is not black
-  float glass_;            ///< weight of the glass lobe
+  bool mirror_;           ///< GGX and glass are perfectly smooth
+  bool lambertian_;       ///< only the diffuse lobe, nothing over it
+  bool has_cosine_lobe_;  ///< from one side at least
+  float glass_;           ///< weight of the glass lobe
   float ior_;
-  Vec3f f0_, f90_;  ///< reflectances of coat and metal, with their weights
-  Vec3f diffuse_;   ///< albedo under the coat, with weight
-  float coat_f0_;
-  float coat_scale_ = 1;                ///< of the diffuse lobe: 1 / (1 - mean coat albedo)
+  float dielectric_f0_;
+  Vec3f f0_, f90_;                      ///< reflectances of dielectric and metal, with their weights
+  Vec3f diffuse_;                       ///< albedo under the dielectric, with weight
+  Vec3f diffuse_from_behind_;           ///< the same and the subsurface lobe's
+  float diffuse_scale_ = 1;             ///< 1 / (mean of diffuse_passed)
+  float subsurface_ = 0;                ///< weight of the subsurface lobe
   Vec3f metal_return_ = Vec3f::Zero();  ///< of multiple scattering among facets, with weight
   Vec3f absorption_, emission_, albedo_;
+  Subsurface inside_;
   AlbedoTable ggx_albedo_, glass_outside_, glass_inside_;
+  std::shared_ptr<const TopLayers> top_;
 };
 
 }  // namespace softreel

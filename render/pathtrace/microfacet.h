@@ -14,6 +14,9 @@ namespace softreel {
 /// Below this alpha a surface is treated as perfectly smooth: its highlight is narrower than float directions resolve.
 inline constexpr float kSmoothAlpha = 1e-3f;
 
+/// Lobes of this alpha (roughness 0.32) and more are wide: no details show in them.
+inline constexpr float kWideAlpha = 0.1f;
+
 /// Density of facet normals, D(h).
 inline float ggx_distribution(float cos_h, float alpha) {
   const float a2 = alpha * alpha;

@@ -1,6 +1,9 @@
 #include "render/pathtrace/path_integrator.h"
 
+#include <bit>
+
 #include "render/pathtrace/edge_lines.h"
+#include "render/pathtrace/random_walk.h"
 #include "render/pathtrace/shadow_catcher.h"
 
 namespace softreel {
@@ -10,9 +13,20 @@ namespace {
 /// Paths of this many scattering events may be ended by chance.
 constexpr int kRouletteStart = 3;
 constexpr std::size_t kFewLights = 4;
+/// Blocks of numbers from here on are those of the points where light leaves a body, one a scattering event.
+constexpr std::uint32_t kLeavingBlocks = 1u << 16;
 
 /// Dimensions of a scattering event's block.
-enum Dimension : std::size_t { kLightU = 0, kLightV = 1, kBsdfU = 2, kBsdfV = 3, kLobe = 4, kLight = 5, kRoulette = 6 };
+enum Dimension : std::size_t {
+  kLightU = 0,
+  kLightV = 1,
+  kBsdfU = 2,
+  kBsdfV = 3,
+  kLobe = 4,
+  kLight = 5,
+  kRoulette = 6,
+  kLength = 7
+};
 
 }  // namespace
 
@@ -72,7 +86,9 @@ void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, con
 
 void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
                                const Vec3f& to_viewer, const LightSample& light, bool point_like) {
-  const BsdfValue value = bsdf.evaluate(frame.to_local(to_viewer), frame.to_local(light.direction), point.inside);
+  const Vec3f towards = frame.to_local(light.direction);
+  const BsdfValue value =
+      leaving_ ? bsdf.evaluate_leaving(towards) : bsdf.evaluate(frame.to_local(to_viewer), towards, point.inside);
   if (value.value.maxCoeff() <= 0) return;
   const float weight = point_like ? 1.0f : power_heuristic(light.pdf, value.pdf);
   const bool through = light.direction.dot(point.shading_normal) < 0;
@@ -93,6 +109,12 @@ bool PathIntegrator::scatter(const Bsdf& bsdf, const SurfacePoint& point, const 
     return false;
   throughput_ = throughput_.cwiseProduct(next.weight);
   if (!(throughput_.maxCoeff() > 0)) return false;
+  follow(next, point, frame, ray);
+  if (next.subsurface && !scatter_inside(bsdf, point, numbers, ray)) return false;
+  return bounces_ < kRouletteStart || survives_roulette(numbers[kRoulette]);
+}
+
+void PathIntegrator::follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame, Ray& ray) {
   ray.origin = next.direction.z() < 0 ? point.lowered : point.lifted;
   ray.direction = frame.to_world(next.direction);
   ray.max_distance = std::numeric_limits<float>::infinity();
@@ -100,7 +122,38 @@ bool PathIntegrator::scatter(const Bsdf& bsdf, const SurfacePoint& point, const 
   origin_.only_way = next.mirror;
   scattered_wide_ = scattered_wide_ || next.wide;
   origin_.from_camera = false;
-  return bounces_ < kRouletteStart || survives_roulette(numbers[kRoulette]);
+}
+
+bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const SampleBlock& numbers, Ray& ray) {
+  // About the triangle's own normal: the interpolated one could lead out again.
+  const Vec3f inward = -cosine_hemisphere(Vec2f(numbers[kBsdfU], numbers[kBsdfV]));
+  ray.direction = ShadingFrame(point.geometric_normal).to_world(inward);
+  const SampleBlock leaving_numbers = sampler_.numbers(sample_, kLeavingBlocks + static_cast<std::uint32_t>(bounces_));
+  RandomStream stream(std::uint64_t{std::bit_cast<std::uint32_t>(leaving_numbers[kRoulette])} << 32 |
+                      std::bit_cast<std::uint32_t>(leaving_numbers[kBsdfU]));
+  const WalkStart start{ray, throughput_.cwiseProduct(bsdf.subsurface().color), leaving_numbers[kLobe],
+                        leaving_numbers[kLength]};
+  WalkExit exit;
+  if (!random_walk(*picture_.rays, mesh_, medium_of(bsdf.subsurface()), start, stream, exit)) return false;
+  throughput_ = throughput_.cwiseProduct(exit.weight);
+  // Seen from outside: the ray that would come in where the walk goes out.
+  Ray seen = exit.ray;
+  seen.direction = -exit.ray.direction;
+  const SurfacePoint out = surface_point(*picture_.meshes[static_cast<std::size_t>(mesh_)], exit.hit, seen);
+  const ShadingFrame frame(out.shading_normal);
+  origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light};
+  leaving_ = true;
+  add_direct(bsdf, out, frame, exit.ray.direction, leaving_numbers);
+  leaving_ = false;
+  BsdfSample next;
+  next.direction = cosine_hemisphere(Vec2f(leaving_numbers[kBsdfU], leaving_numbers[kBsdfV]));
+  const BsdfValue value = bsdf.evaluate_leaving(next.direction);
+  if (!(value.pdf > 0)) return false;
+  throughput_ = throughput_.cwiseProduct(value.value / value.pdf);
+  next.pdf = value.pdf;
+  next.wide = true;
+  follow(next, out, frame, ray);
+  return true;
 }
 
 bool PathIntegrator::survives_roulette(float u) {
@@ -118,6 +171,7 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     const bool found = picture_.rays->intersect(ray, hit, bounces_ == 0);
     collect(ray, found, hit.distance);
     if (!found) break;
+    mesh_ = hit.mesh;
     if (bounces_ == 0 && picture_.catches_shadows && hit.mesh + 1 == static_cast<Index>(picture_.meshes.size())) {
       catch_shadow(hit, ray);
       break;

@@ -75,6 +75,11 @@ class PathIntegrator {
   /// Continues the path; false where it ends.
   bool scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
                const SampleBlock& numbers, Ray& ray);
+  /// Takes a sampled direction.
+  void follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame, Ray& ray);
+  /// From a subsurface sample at `point` through the body to where it leaves, lights sampled there; counts as one
+  /// scattering with the one that entered. False where the path ends.
+  bool scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const SampleBlock& numbers, Ray& ray);
   bool survives_roulette(float u);
 
   const Picture& picture_;
@@ -84,6 +89,8 @@ class PathIntegrator {
   Vec3f throughput_ = Vec3f::Ones();
   int bounces_ = 0;  ///< scattering events so far
   float time_ = 0;
+  Index mesh_ = -1;       ///< last one hit
+  bool leaving_ = false;  ///< lights are sampled for light that leaves a body
   bool scattered_wide_ = false;
   RayOrigin origin_;
   FirstHit first_hit_;

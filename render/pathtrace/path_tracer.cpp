@@ -205,7 +205,9 @@ void add_bsdfs(Picture& picture, const Appearance& appearance, float least_rough
   picture.bsdfs.emplace_back(appearance);
   Appearance blurred = appearance;
   blurred.roughness = std::max(appearance.roughness, least_roughness);
-  if (blurred.roughness == appearance.roughness)
+  blurred.coat_roughness = std::max(appearance.coat_roughness, least_roughness);
+  const bool same_coat = appearance.coat <= 0 || blurred.coat_roughness == appearance.coat_roughness;
+  if (blurred.roughness == appearance.roughness && same_coat)
     picture.blurred.push_back(picture.bsdfs.back());
   else
     picture.blurred.emplace_back(blurred);

@@ -36,6 +36,8 @@ class RayScene {
 
   /// coherent: neighbouring calls have similar rays (a hint for speed only).
   virtual bool intersect(const Ray& ray, RayHit& hit, bool coherent) const = 0;
+  /// As intersect, but of one mesh, whose material scatters light inside (subsurface above 0). front: hit from outside.
+  virtual bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const = 0;
   /// Whether anything is on the ray.
   virtual bool occluded(const Ray& ray, bool coherent) const = 0;
 };

@@ -74,7 +74,7 @@ class EmbreeScene : public RayScene {
     CHECK(device_ != nullptr);
   }
   ~EmbreeScene() override {
-    if (scene_ != nullptr) rtcReleaseScene(scene_);
+    release_scenes();
     rtcReleaseDevice(device_);
   }
   EmbreeScene(const EmbreeScene&) = delete;
@@ -82,16 +82,34 @@ class EmbreeScene : public RayScene {
 
   void build(const std::vector<const MotionMesh*>& meshes) override;
   bool intersect(const Ray& ray, RayHit& hit, bool coherent) const override;
+  bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const override;
   bool occluded(const Ray& ray, bool coherent) const override;
 
  private:
-  void attach(const MotionMesh& mesh, unsigned id) const;
+  void attach(const MotionMesh& mesh, unsigned id);
+  RTCScene new_scene() const;
+  void release_scenes();
 
   RTCDevice device_;
   RTCScene scene_ = nullptr;
+  std::vector<RTCScene> bodies_;  ///< per mesh, of it alone; null where light does not scatter inside
 };
 
-void EmbreeScene::attach(const MotionMesh& mesh, unsigned id) const {
+RTCScene EmbreeScene::new_scene() const {
+  const RTCScene scene = rtcNewScene(device_);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+  return scene;
+}
+
+void EmbreeScene::release_scenes() {
+  for (const RTCScene body : bodies_)
+    if (body != nullptr) rtcReleaseScene(body);
+  bodies_.clear();
+  if (scene_ != nullptr) rtcReleaseScene(scene_);
+  scene_ = nullptr;
+}
+
+void EmbreeScene::attach(const MotionMesh& mesh, unsigned id) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
   rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(mesh.times.size()));
@@ -100,16 +118,22 @@ void EmbreeScene::attach(const MotionMesh& mesh, unsigned id) const {
   copy_triangles(geometry, mesh.triangles);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene_, geometry, id);
+  if (mesh.appearance.subsurface > 0) {
+    bodies_[id] = new_scene();
+    rtcAttachGeometryByID(bodies_[id], geometry, 0);
+  }
   rtcReleaseGeometry(geometry);
 }
 
 void EmbreeScene::build(const std::vector<const MotionMesh*>& meshes) {
-  if (scene_ != nullptr) rtcReleaseScene(scene_);
-  scene_ = rtcNewScene(device_);
-  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
+  release_scenes();
+  scene_ = new_scene();
+  bodies_.assign(meshes.size(), nullptr);
   for (std::size_t m = 0; m < meshes.size(); ++m) attach(*meshes[m], static_cast<unsigned>(m));
   require_no_error(device_, "copying a mesh");
   rtcCommitScene(scene_);
+  for (const RTCScene body : bodies_)
+    if (body != nullptr) rtcCommitScene(body);
   require_no_error(device_, "building trees");
 }
 
@@ -125,6 +149,18 @@ bool EmbreeScene::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
   hit.v = query.hit.v;
   hit.mesh = static_cast<Index>(query.hit.geomID);
   hit.triangle = static_cast<Index>(query.hit.primID);
+  return true;
+}
+
+bool EmbreeScene::intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const {
+  RTCIntersectContext context = context_of(false);
+  RTCRayHit query;
+  query.ray = embree_ray(ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(bodies_[static_cast<std::size_t>(mesh)], &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit = {query.ray.tfar, query.hit.u, query.hit.v, mesh, static_cast<Index>(query.hit.primID)};
+  front = Vec3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).dot(ray.direction) < 0;
   return true;
 }
 

@@ -1,6 +1,7 @@
 // The tables of bodies: placement, size of the tetrahedra, regions, pins, pulls, materials.
 #include <fmt/format.h>
 
+#include "render/pathtrace/sheen.h"
 #include "tool/shot/codecs.h"
 #include "tool/shot/keyed_appearance.h"
 #include "tool/shot/schema_tables.h"
@@ -13,6 +14,8 @@ constexpr std::int64_t kDefaultTets = 20000;
 constexpr std::int64_t kMostTets = 500000000;
 /// From 0.5 on the material is incompressible, which has no finite stiffness; near it the numbers degrade.
 constexpr Range kPoissonRatio{0, 0.499, false};
+/// What takes all light has no finite thickness.
+constexpr Range kTint{0, 1, true};
 
 /// A track that moves nothing.
 Track<Transform> resting_track() {
@@ -195,15 +198,31 @@ const Table<MaterialSettings>& material_table() {
     };
     const auto color = [&t](const char* name, Vec3f Appearance::*member, const Range& range, const char* unit,
                             const char* sentence) { add_keyed(t, name, member, range, unit, sentence); };
+    const auto number_of = [&t](const char* name, float Appearance::*member, const Range& range, const char* unit,
+                                const char* sentence) { add_keyed(t, name, member, range, unit, sentence); };
     using A = Appearance;
     color("base_color", &A::base_color, kShare, "linear", "Share of the light that comes back.");
     share("roughness", &A::roughness, "0 mirrors, 1 is matte.");
     share("metallic", &A::metallic, "How much of it is metal.");
-    share("specular", &A::specular, "Strength of the clear coat: it reflects 0.08 of this head-on.");
+    share("specular", &A::specular, "Strength of its own reflections: 0.08 of this head-on.");
     share("transmission", &A::transmission, "How much of what is not metal is glass.");
-    add_keyed(t, "ior", &A::ior, {1, 5, false}, "", "Refractive index of the glass.");
+    number_of("ior", &A::ior, {1, 5, false}, "", "Refractive index of the glass.");
     color("absorption", &A::absorption, kNotNegative, "1/m", "How fast the glass takes light in.");
     color("emission", &A::emission, kNotNegative, "W/(m^2 sr)", "Light that the surface gives off.");
+    share("coat", &A::coat, "How much of it is under clear varnish.");
+    share("coat_roughness", &A::coat_roughness, "Of the varnish: 0 mirrors, 1 is matte.");
+    number_of("coat_ior", &A::coat_ior, {1, 5, false}, "", "Refractive index of the varnish.");
+    color("coat_color", &A::coat_color, kTint, "linear", "What white looks like through the varnish.");
+    share("sheen", &A::sheen, "How much of it is under fine fibres, as of velvet: bright rims.");
+    number_of("sheen_roughness", &A::sheen_roughness, {Sheen::kLeastRoughness, 1, false}, "",
+              "Of the fibres: low at the very rim only, 1 all over.");
+    color("sheen_color", &A::sheen_color, kShare, "linear", "Colour of the fibres.");
+    share("subsurface", &A::subsurface, "How much of what is neither metal nor glass scatters light inside the body.");
+    color("subsurface_radius", &A::subsurface_radius, kPositive, "m",
+          "How far its colours spread inside before they come out; give the body a closed surface.");
+    number_of("subsurface_scale", &A::subsurface_scale, kPositive, "", "Factor on subsurface_radius.");
+    number_of("subsurface_anisotropy", &A::subsurface_anisotropy, {-0.95, 0.95, false}, "",
+              "Which way the inside scatters: 0 all ways, above 0 forwards, which lets thin parts glow.");
     add_texture_fields(t);
     return t;
   }();

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/pathtrace/sampler.h"
-#include "render/pathtrace/sampling.h"
+#include "tests/render/scattering_checks.h"
 
 namespace softreel {
 namespace {
@@ -29,8 +28,32 @@ Case make_case(std::string name, float roughness, float metallic, float specular
   return c;
 }
 
+/// With layers over it.
+Case covered(Case c, float coat, float coat_roughness, float sheen, float sheen_roughness) {
+  c.name += " under layers";
+  c.appearance.coat = coat;
+  c.appearance.coat_roughness = coat_roughness;
+  c.appearance.coat_color = Vec3f(0.9f, 0.6f, 0.3f);
+  c.appearance.sheen = sheen;
+  c.appearance.sheen_roughness = sheen_roughness;
+  c.appearance.sheen_color = Vec3f(0.5f, 0.8f, 1.0f);
+  return c;
+}
+
+Case subsurface_case(float share, bool inside) {
+  Case c = make_case("subsurface", 0.4f, 0, 0.5f, 0, inside);
+  c.appearance.subsurface = share;
+  return c;
+}
+
 std::vector<Case> smooth_cases() {
-  return {make_case("diffuse", 0.5f, 0, 0, 0),
+  return {covered(make_case("diffuse", 0.5f, 0, 0, 0), 1, 0.4f, 0, 1),
+          covered(make_case("dielectric", 0.5f, 0, 0.5f, 0), 0, 0, 1, 0.3f),
+          covered(make_case("metal", 0.6f, 1, 0, 0), 0.7f, 0.5f, 0.8f, 0.6f),
+          covered(make_case("glass", 0.6f, 0, 0.5f, 0.5f), 1, 0.4f, 0.5f, 0.2f),
+          subsurface_case(0.6f, false),
+          subsurface_case(0.6f, true),
+          make_case("diffuse", 0.5f, 0, 0, 0),
           make_case("coated", 0.5f, 0, 0.5f, 0),
           make_case("glossy coat", 0.25f, 0, 1, 0),
           make_case("metal", 0.6f, 1, 0, 0),
@@ -38,24 +61,6 @@ std::vector<Case> smooth_cases() {
           make_case("glass", 0.6f, 0, 0.5f, 1),
           make_case("glass from inside", 0.6f, 0, 0.5f, 1, true),
           make_case("all", 0.7f, 0.3f, 0.5f, 0.4f)};
-}
-
-Vec3f direction(float polar, float azimuth) {
-  return {std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)};
-}
-
-/// Integral over all directions of f(direction), by midpoints in cosine and azimuth.
-template <typename F>
-Vec3f over_sphere(const F& f) {
-  constexpr int kRows = 400, kColumns = 200;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int r = 0; r < kRows; ++r)
-    for (int c = 0; c < kColumns; ++c) {
-      const float z = -1 + 2 * (static_cast<float>(r) + 0.5f) / kRows;
-      const Vec3f i = direction(std::acos(z), 2 * kPi * (static_cast<float>(c) + 0.5f) / kColumns);
-      sum += f(i).template cast<double>();
-    }
-  return (sum * (4 * M_PI / (kRows * kColumns))).cast<float>();
 }
 
 TEST(Bsdf, DensityIntegratesToTheShareOfSamplesThatArrive) {
@@ -69,7 +74,7 @@ TEST(Bsdf, DensityIntegratesToTheShareOfSamplesThatArrive) {
     for (std::uint32_t s = 0; s < 4096; ++s) {
       const SampleBlock u = sampler.numbers(s, 0);
       BsdfSample sample;
-      arrived += bsdf.sample(o, u[2], Vec2f(u[0], u[1]), c.inside, sample) ? 1 : 0;
+      arrived += bsdf.sample(o, u[2], Vec2f(u[0], u[1]), c.inside, sample) && !sample.subsurface ? 1 : 0;
     }
     EXPECT_NEAR(integral, static_cast<float>(arrived) / 4096, 0.01f) << c.name;
     EXPECT_LE(integral, 1.005f) << c.name;
@@ -84,7 +89,7 @@ TEST(Bsdf, SamplesCarryTheValueOverTheDensity) {
       const SampleBlock u = sampler.numbers(s, 0);
       const Vec3f o = direction(0.1f + 1.4f * u[4], 1.0f);
       BsdfSample sample;
-      if (!bsdf.sample(o, u[2], Vec2f(u[0], u[1]), c.inside, sample)) continue;
+      if (!bsdf.sample(o, u[2], Vec2f(u[0], u[1]), c.inside, sample) || sample.subsurface) continue;
       ASSERT_FALSE(sample.mirror);
       const BsdfValue value = bsdf.evaluate(o, sample.direction, c.inside);
       EXPECT_NEAR(sample.direction.norm(), 1, 1e-5) << c.name;
@@ -104,7 +109,8 @@ TEST(Bsdf, SamplingGivesTheSameAlbedoAsIntegration) {
     for (std::uint32_t s = 0; s < 4096; ++s) {
       const SampleBlock u = sampler.numbers(s, 0);
       BsdfSample sample;
-      if (bsdf.sample(o, u[2], Vec2f(u[0], u[1]), c.inside, sample)) mean += sample.weight / 4096;
+      const bool found = bsdf.sample(o, u[2], Vec2f(u[0], u[1]), c.inside, sample);
+      if (found && !sample.subsurface) mean += sample.weight / 4096;
     }
     EXPECT_LT((integral - mean).cwiseAbs().maxCoeff(), 0.012f) << c.name;
   }
@@ -139,16 +145,7 @@ TEST(Bsdf, GlassIsReciprocalThroughTheSurface) {
 }
 
 Vec3f furnace(const Appearance& appearance, float cosine, bool inside) {
-  const Bsdf bsdf(appearance);
-  const Vec3f o = direction(std::acos(cosine), 0.4f);
-  const Sampler sampler(11, 12, 13);
-  Vec3f mean = Vec3f::Zero();
-  for (std::uint32_t s = 0; s < 4096; ++s) {
-    const SampleBlock u = sampler.numbers(s, 0);
-    BsdfSample sample;
-    if (bsdf.sample(o, u[2], Vec2f(u[0], u[1]), inside, sample)) mean += sample.weight / 4096;
-  }
-  return mean;
+  return sampled_albedo(Bsdf(appearance), direction(std::acos(cosine), 0.4f), inside);
 }
 
 TEST(Bsdf, WhiteSurfacesReflectAllLightAndNoMore) {

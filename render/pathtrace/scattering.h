@@ -1,0 +1,23 @@
+/// What a scattering function answers: values with densities, and samples.
+#pragma once
+
+#include "core/base/types.h"
+
+namespace softreel {
+
+/// f cos_i and the density of sample() for the same pair.
+struct BsdfValue {
+  Vec3f value = Vec3f::Zero();
+  float pdf = 0;
+};
+
+struct BsdfSample {
+  Vec3f direction;          ///< local
+  Vec3f weight;             ///< f cos_i / pdf
+  float pdf = 0;            ///< by solid angle; 0 if `mirror` or `subsurface`
+  bool wide = false;        ///< of a lobe so wide that no details show through it
+  bool mirror = false;      ///< one of finitely many directions: no light sampling can find it
+  bool subsurface = false;  ///< enters the body there, to be scattered inside (Bsdf::subsurface)
+};
+
+}  // namespace softreel
