@@ -66,10 +66,10 @@ TEST_F(ErrorDialOfTheProgram, IsInTheStatusAndAnotherErrorTurnsItAgain) {
 
 TEST_F(ErrorDialOfTheProgram, RefusesWhatItsLimitsDoNotReach) {
   start("dial_limits");
-  const Outcome outcome = run(
-      fmt::format("softreel simulate {0}/shot.toml --output {0}/out --quiet --set solver.error=0.001% --set "
-                  "solver.max_tets=13000 --set solver.max_substeps=4",
-                  folder_));
+  const Outcome outcome =
+      run(fmt::format("softreel simulate {0}/shot.toml --output {0}/out --quiet --set solver.error=0.001% --set "
+                      "solver.max_tets=13000 --set solver.max_substeps=4",
+                      folder_));
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("is not reached for body \"ball\""), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("Raise error, or these two."), std::string::npos) << outcome.err;
