@@ -20,6 +20,8 @@ constexpr std::int64_t kFirstTets = 1500;
 constexpr std::int64_t kMeshRatio = 2;
 /// The mesh that time and tolerance are judged on.
 constexpr std::int64_t kMiddleTets = kFirstTets * kMeshRatio;
+/// Three would do for a fit, but where pins scatter the errors two of them differ too little by chance.
+constexpr std::size_t kFewestRungs = MeshErrors::kFewest + 1;
 /// The run may have so many times the tetrahedra of the last rung.
 constexpr double kReach = 8;
 /// Steps of a frame on the rungs: two meshes differ by nearly the same in long steps as in short ones.
@@ -126,13 +128,13 @@ class Dial {
       std::optional<Motion> motion = pilot(tets, rung_steps());
       if (!motion) continue;
       meshes_.add(static_cast<double>(tets), std::move(*motion));
-      if (meshes_.count() < MeshErrors::kFewest) continue;
+      if (meshes_.count() < kFewestRungs) continue;
       meshes_.fit();
       const double reach = kReach * static_cast<double>(tets);
       if ((given > 0 ? given : needed_tets(wanted)) <= reach || reach >= most) break;
       least = reach;
     }
-    if (meshes_.count() < MeshErrors::kFewest) return false;
+    if (meshes_.count() < kFewestRungs) return false;
     choice_.mesh_order = meshes_.order();
     take_mesh(std::max(least, needed_tets(wanted)));
     return true;

@@ -58,7 +58,7 @@ using PilotRun = std::function<std::optional<Motion>(const Discretization&)>;
 /// Turns the dial. First steps are doubled on a coarse mesh until their error is a fifth of the wanted one; then the
 /// ladder of meshes is climbed, in at most two steps a frame, until the mesh that is wanted is measured or at most
 /// eight times as fine as the last rung; last the tolerance is tightened until it is a twentieth. So the ladder costs a
-/// quarter to half of what as many steps of the run cost, and never less than its first three rungs: 10500 tetrahedra.
+/// quarter to half of what as many steps of the run cost, and never less than its first four rungs: 22500 tetrahedra.
 /// None if too few pilots could be run within the limits.
 std::optional<DialChoice> turn_dial(const DialRequest& request, const PilotRun& run);
 
