@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
+#include "core/tetmesh/all_gaps.h"
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
-#include "core/tetmesh/farthest_point.h"
 #include "core/tetmesh/graded_octree.h"
 #include "core/tetmesh/graded_stuffing.h"
 #include "core/tetmesh/hidden_surface.h"
@@ -51,7 +51,8 @@ constexpr double kLooseShare = 0.02;
 constexpr double kErrorOverCount = 0.6;
 
 /// After so many rounds the number of elements is known but for a factor that depends on the surface, and on the error
-/// little. A filling that will have less than this share of the wanted number is given up there.
+/// little. A filling that will have less than this share of the wanted number is given up there; mending the last gaps
+/// does not bring it there either.
 constexpr int kTrialRounds = 4;
 constexpr double kUsualGrowth = 1.2, kTooFew = 0.88;
 
@@ -204,7 +205,7 @@ class Filling {
       expected_share_ = foreseen;
       return true;
     }
-    return is_near_count(filling) && is_nearly_kept(gaps);
+    return is_nearly_kept(gaps) && (is_near_count(filling) || share < kTooFew);
   }
 
   /// Whether the widest gap has long been no narrower than before: no size mends it. The rim of a hole can be such a
@@ -277,30 +278,9 @@ class Filling {
     std::erase_if(gaps, [&](const BoundaryGap& gap) { return gap.from_boundary && caps_.contain(gap.on_boundary); });
   }
 
-  /// The faces of the boundary that have a surface to follow.
-  SurfaceMesh without_caps(const std::vector<Vec3>& nodes, const std::vector<Triangle>& faces) const {
-    if (caps_.any()) return caps_.without_caps(nodes, faces, kCertain * error_, threads_);
-    SurfaceMesh all;
-    all.positions = nodes;
-    all.triangles = faces;
-    return all;
-  }
-
   /// All gaps, also between samples and inside faces.
   std::vector<BoundaryGap> find_gaps(const StuffedMesh& stuffed) const {
-    const double limit = kCertain * error_;
-    std::vector<Triangle> faces;
-    for (const BoundaryFace& face : find_surface_faces(stuffed)) faces.push_back(face.nodes);
-    const TriangleTree boundary(stuffed.mesh.nodes, faces);
-    std::vector<BoundaryGap> gaps;
-    for (const Vec3& p : find_far_points(visible_.positions, visible_.triangles, boundary, limit, threads_)) {
-      const TriangleTree::Nearest found = boundary.nearest(p);
-      gaps.push_back({p, found.point, faces[at(found.triangle)]});
-    }
-    const SurfaceMesh followed = without_caps(stuffed.mesh.nodes, faces);
-    for (const Vec3& p : find_far_points(followed.positions, followed.triangles, sampler_.tree(), limit, threads_))
-      gaps.push_back({sampler_.tree().nearest(p).point, p, faces[at(boundary.nearest(p).triangle)], true});
-    return gaps;
+    return find_all_gaps(stuffed, visible_, sampler_.tree(), caps_, kCertain * error_, threads_);
   }
 
   /// Halves the largest leaves at each gap, and those within `margin` of their width. False if there is none that may
