@@ -7,21 +7,24 @@
 
 #include <Eigen/Dense>
 
-#include "core/tetmesh/boundary_probes.h"
 #include "core/tetmesh/boundary_stars.h"
-#include "core/tetmesh/sample_pairing.h"
 #include "core/tetmesh/surface_samples.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
 namespace {
 
-/// A node goes no further than this towards the nearest point of the surface, in lengths of its longest edge: what is
-/// further away is not its own surface.
+constexpr std::int64_t kGrain = 256;
+
+/// A node goes no further than this towards the nearest point of the surface, and a face is drawn to no sample further
+/// away, in lengths of their longest edge: what is further away is not their own surface.
 constexpr double kReach = 1.0;
 
 /// Samples nearer than this share of the tolerance are let be.
 constexpr double kNear = 0.8;
+
+/// A face is drawn by the farthest of its samples, and by about so many others.
+constexpr Index kFaceSamples = 12;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -36,57 +39,74 @@ double cubed(double x) {
 /// The boundary nodes and their stars, and the elements while they are fitted.
 class BoundaryFit::Fit {
  public:
-  Fit(StuffedMesh& stuffed, const TriangleTree& tree, std::span<const Vec3> samples, const BoundaryFitParams& params,
+  Fit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples, const BoundaryFitParams& params,
       const Threads& threads, FitMemory* memory)
       : mesh_(stuffed.mesh),
+        tree_(tree),
+        samples_(samples),
         params_(params),
         threads_(threads),
         memory_(memory),
         stars_(stuffed),
         near_(std::pow(kNear * params.tolerance * stuffed.mesh.lattice.spacing, 2)),
-        wanted_(std::pow(params.tolerance * stuffed.mesh.lattice.spacing, 2)),
-        samples_(samples, stars_, mesh_, near_),
-        probes_(tree, stars_, mesh_, near_),
-        moved_(stars_.nodes.size(), 1),
-        settled_(stars_.nodes.size(), 0) {}
+        wanted_(std::pow(params.tolerance * stuffed.mesh.lattice.spacing, 2)) {}
 
   void run() {
+    sample_faces_.assign(samples_.size(), -1);
+    probes_.resize(stars_.nodes.size() + stars_.edges.size() + stars_.faces.size());
     std::vector<Vec3> before;
     for (const Index node : stars_.nodes) before.push_back(position(node));
-    begin();
+    draw_to_surface();
+    moved_.assign(stars_.nodes.size(), true);
     for (int sweep = 0; sweep < params_.sweeps; ++sweep) {
-      if (!relax_all()) break;
-      measure();
+      pair_samples();
+      find_probes();
+      moved_.assign(stars_.nodes.size(), false);
+      bool any = false;
+      for (std::size_t b = 0; b < stars_.nodes.size(); ++b) {
+        if (!is_wanted(b) || !relax(b)) continue;
+        moved_[b] = any = true;
+      }
+      if (!any) break;
     }
+    pair_samples();
+    find_probes();
     if (memory_ == nullptr) return;
-    *memory_ = FitMemory(stars_, std::move(before), mesh_.nodes);
-    memory_->settled = settled_;
-    memory_->probes = probes_.near_triangles();
-    memory_->samples = samples_.near_faces();
+    *memory_ = {};
+    for (std::size_t b = 0; b < before.size(); ++b) memory_->add(before[b], position_of(b));
   }
 
   std::vector<BoundaryGap> gaps(double limit) const {
     std::vector<BoundaryGap> gaps;
     const double squared = limit * limit;
-    for (std::size_t s = 0; s < samples_.near_faces().size(); ++s) {
-      if (samples_.near_faces()[s].squared <= squared) continue;
-      const Vec3& x = samples_.point(static_cast<Index>(s));
-      const Triangle& face = stars_.faces[at(samples_.near_faces()[s].number)].nodes;
-      gaps.push_back({x, nearest_on_triangle(x, position(face[0]), position(face[1]), position(face[2])), face});
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+      if (sample_distances_[s] <= squared) continue;
+      const Triangle& face = stars_.faces[at(sample_faces_[s])].nodes;
+      gaps.push_back({samples_[s],
+                      nearest_on_triangle(samples_[s], position(face[0]), position(face[1]), position(face[2])), face});
     }
     const auto add_probe = [&](std::size_t p, const Triangle& face) {
-      if (probes_[p].number < 0 || probes_[p].squared <= squared) return;
-      gaps.push_back({probes_.foot(p), probes_.point(p), face, true});
+      if (probes_[p].place < 0 || probes_[p].squared <= squared) return;
+      const auto& [a, b, c] = tree_.corners()[at(probes_[p].place)];
+      const Vec3 x = probe_point(p);
+      gaps.push_back({nearest_on_triangle(x, a, b, c), x, face, true});
     };
-    for (std::size_t f = 0; f < stars_.faces.size(); ++f) add_probe(probes_.of_face(f), stars_.faces[f].nodes);
+    for (std::size_t f = 0; f < stars_.faces.size(); ++f)
+      add_probe(stars_.nodes.size() + stars_.edges.size() + f, stars_.faces[f].nodes);
     for (std::size_t e = 0; e < stars_.edges.size(); ++e)
-      add_probe(probes_.of_edge(e), {stars_.edges[e][0], stars_.edges[e][1], stars_.edges[e][1]});
+      add_probe(stars_.nodes.size() + e, {stars_.edges[e][0], stars_.edges[e][1], stars_.edges[e][1]});
     for (std::size_t b = 0; b < stars_.nodes.size(); ++b)
       add_probe(b, {stars_.nodes[b], stars_.nodes[b], stars_.nodes[b]});
     return gaps;
   }
 
  private:
+  /// The nearest triangle of the surface to a point of the boundary.
+  struct Probe {
+    Index place = -1;  ///< in the tree; -1: none within reach
+    double squared = 0;
+  };
+
   const Vec3& position(Index node) const { return mesh_.nodes[at(node)]; }
   Vec3& position_of(std::size_t b) { return mesh_.nodes[at(stars_.nodes[b])]; }
 
@@ -97,89 +117,150 @@ class BoundaryFit::Fit {
     return std::sqrt(squared);
   }
 
-  /// Puts the nodes where an earlier fit left them, and new ones on the surface; measures what is not known yet.
-  void begin() {
-    if (memory_ == nullptr || memory_->before.empty()) {
-      draw_to_surface(std::vector<Index>(stars_.nodes.size(), -1));
-      measure();
-      return;
-    }
-    const Recollection known(*memory_, stars_, mesh_.nodes);
-    samples_.recall(*memory_, known);
-    probes_.recall(*memory_, known);
-    draw_to_surface(known.nodes);
-    for (std::size_t b = 0; b < moved_.size(); ++b)
-      if (const Index old = known.nodes[b]; old >= 0 && position_of(b) == memory_->after[at(old)]) {
-        moved_[b] = 0;
-        settled_[b] = memory_->settled[at(old)];
-      }
-    const auto unsettle_new = [&](const std::vector<Index>& old_numbers, const auto& nodes_of) {
-      for (std::size_t i = 0; i < old_numbers.size(); ++i)
-        if (old_numbers[i] < 0)
-          for (const Index node : nodes_of(i)) settled_[at(stars_.numbers[at(node)])] = 0;
-    };
-    unsettle_new(
-        known.edges, [&](std::size_t e) -> const auto& { return stars_.edges[e]; });
-    unsettle_new(
-        known.faces, [&](std::size_t f) -> const auto& { return stars_.faces[f].nodes; });
-    measure();
-  }
-
-  /// Moves every node to the nearest point of the surface, or to where it was before, as far as its star allows.
-  void draw_to_surface(const std::vector<Index>& known) {
-    probes_.find_at_nodes(threads_);
+  /// Moves every node to the nearest point of the surface, as far as its star allows.
+  void draw_to_surface() {
     std::vector<Vec3> targets(stars_.nodes.size());
-    for (std::size_t b = 0; b < targets.size(); ++b) {
-      targets[b] = position_of(b);
-      if (known[b] >= 0)
-        targets[b] = memory_->after[at(known[b])];
-      else if (probes_[b].squared < std::pow(kReach * longest_edge(b), 2))
-        targets[b] = probes_.foot(b);
-    }
+    threads_.for_chunks(static_cast<std::int64_t>(targets.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      Index guess = -1;
+      for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+        targets[b] = position(stars_.nodes[b]);
+        const TriangleTree::Nearest found = tree_.nearest_from(targets[b], guess);
+        probes_[b] = {found.place, found.squared_distance};
+        guess = found.place;
+        const Vec3* known = memory_ == nullptr ? nullptr : memory_->find(targets[b]);
+        if (known != nullptr)
+          targets[b] = *known;
+        else if (found.squared_distance < std::pow(kReach * longest_edge(b), 2))
+          targets[b] = found.point;
+      }
+    });
     // Twice: at first neighbours may not be where they leave room.
     for (int pass = 0; pass < 2; ++pass)
       for (std::size_t b = 0; b < targets.size(); ++b) {
         const Vec3 step = targets[b] - position_of(b);
-        if (!(step.squaredNorm() > 1e-8 * wanted_) || try_step(b, step, [] { return true; }) < 1) continue;
-        if (known[b] >= 0) position_of(b) = targets[b];  // to the last bit: what was measured there stands
+        if (step.squaredNorm() > 1e-8 * wanted_) try_step(b, step, [] { return true; });
       }
-  }
-
-  /// Pairs samples and probes anew where nodes moved. What changed may let its nodes move again.
-  void measure() {
-    const std::vector<std::uint8_t> changed = samples_.update(moved_, threads_);
-    probes_.update(moved_, threads_);
-    for (std::size_t f = 0; f < changed.size(); ++f)
-      if (changed[f] != 0)
-        for (const Index node : stars_.faces[f].nodes) settled_[at(stars_.numbers[at(node)])] = 0;
-    for (std::size_t b = 0; b < moved_.size(); ++b) {
-      if (moved_[b] == 0) continue;
-      for (const Index e : stars_.elements_of.of(b))
-        for (const Index node : mesh_.tets[at(e)])
-          if (const Index near = stars_.numbers[at(node)]; near >= 0) settled_[at(near)] = 0;
+    // What is near a node is a good guess for the edges and faces at it.
+    for (std::size_t p = stars_.nodes.size(); p < probes_.size(); ++p) {
+      const std::size_t e = p - stars_.nodes.size();
+      const Index node = e < stars_.edges.size() ? stars_.edges[e][0] : stars_.faces[e - stars_.edges.size()].nodes[0];
+      probes_[p].place = probes_[at(stars_.numbers[at(node)])].place;
     }
   }
 
-  /// One sweep. Where a node could not move and nothing near it changed since, it is not tried again.
-  bool relax_all() {
-    moved_.assign(stars_.nodes.size(), 0);
-    bool any = false;
-    for (std::size_t b = 0; b < stars_.nodes.size(); ++b) {
-      if (settled_[b] != 0) continue;
-      if (is_wanted(b) && relax(b))
-        moved_[b] = any = true;
-      else
-        settled_[b] = 1;
+  /// Finds the face nearest to each sample, again where something moved.
+  void pair_samples() {
+    std::vector<Triangle> triangles(stars_.faces.size());
+    std::transform(stars_.faces.begin(), stars_.faces.end(), triangles.begin(),
+                   [](const BoundaryFace& face) { return face.nodes; });
+    const TriangleTree boundary(mesh_.nodes, triangles);
+    std::vector<Index> places(triangles.size());
+    for (std::size_t p = 0; p < places.size(); ++p) places[at(boundary.order()[p])] = static_cast<Index>(p);
+    sample_distances_.resize(samples_.size());
+    threads_.for_chunks(static_cast<std::int64_t>(samples_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      Index guess = -1;
+      for (auto s = static_cast<std::size_t>(begin); s < static_cast<std::size_t>(end); ++s) {
+        if (const Index face = sample_faces_[s]; face >= 0) {
+          if (!has_moved(face) && sample_distances_[s] < near_) continue;
+          sample_distances_[s] = squared_distance(samples_[s], face);
+          if (sample_distances_[s] < near_) continue;
+          guess = places[at(face)];
+        }
+        const TriangleTree::Nearest found = boundary.nearest_from(samples_[s], guess, near_);
+        guess = found.place;
+        sample_faces_[s] = found.triangle;
+        sample_distances_[s] = found.squared_distance;
+      }
+    });
+    list_samples();
+  }
+
+  bool has_moved(Index face) const {
+    return std::any_of(stars_.faces[at(face)].nodes.begin(), stars_.faces[at(face)].nodes.end(),
+                       [&](Index node) { return moved_[at(stars_.numbers[at(node)])]; });
+  }
+
+  /// Samples of each face; without those that are out of reach, and some of many.
+  void list_samples() {
+    std::vector<double> reach(stars_.faces.size());
+    for (std::size_t f = 0; f < reach.size(); ++f) {
+      const auto& [a, b, c] = stars_.faces[f].nodes;
+      reach[f] = kReach * kReach *
+                 std::max({(position(a) - position(b)).squaredNorm(), (position(b) - position(c)).squaredNorm(),
+                           (position(c) - position(a)).squaredNorm()});
     }
-    return any;
+    std::vector<Index> counts(stars_.faces.size(), 0), farthest(stars_.faces.size(), -1);
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+      const std::size_t f = at(sample_faces_[s]);
+      if (sample_distances_[s] > reach[f]) continue;
+      ++counts[f];
+      if (farthest[f] < 0 || sample_distances_[s] > sample_distances_[at(farthest[f])])
+        farthest[f] = static_cast<Index>(s);
+    }
+    face_samples_ = CompressedList(stars_.faces.size(), [&](const auto& with) {
+      std::vector<Index> seen(stars_.faces.size(), 0);
+      for (std::size_t s = 0; s < samples_.size(); ++s) {
+        const std::size_t f = at(sample_faces_[s]);
+        if (sample_distances_[s] > reach[f]) continue;
+        const bool is_turn = seen[f]++ % (counts[f] / kFaceSamples + 1) == 0;
+        if (is_turn || farthest[f] == static_cast<Index>(s)) with(f, static_cast<Index>(s));
+      }
+    });
+  }
+
+  double squared_distance(const Vec3& p, Index face) const {
+    const auto& [a, b, c] = stars_.faces[at(face)].nodes;
+    return (nearest_on_triangle(p, position(a), position(b), position(c)) - p).squaredNorm();
+  }
+
+  /// Probes are the boundary nodes, the middles of edges, and the middles of faces.
+  Vec3 probe_point(std::size_t p) const {
+    if (p < stars_.nodes.size()) return position(stars_.nodes[p]);
+    p -= stars_.nodes.size();
+    if (p < stars_.edges.size()) return 0.5 * (position(stars_.edges[p][0]) + position(stars_.edges[p][1]));
+    const auto& [a, b, c] = stars_.faces[p - stars_.edges.size()].nodes;
+    return (position(a) + position(b) + position(c)) / 3;
+  }
+  bool probe_moved(std::size_t p) const {
+    if (p < stars_.nodes.size()) return moved_[p];
+    p -= stars_.nodes.size();
+    if (p >= stars_.edges.size()) return has_moved(static_cast<Index>(p - stars_.edges.size()));
+    return moved_[at(stars_.numbers[at(stars_.edges[p][0])])] || moved_[at(stars_.numbers[at(stars_.edges[p][1])])];
+  }
+
+  void find_probes() {
+    threads_.for_chunks(static_cast<std::int64_t>(probes_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p)
+        if (probe_moved(p)) probes_[p] = probe(p);
+    });
+  }
+
+  /// Beginning with the triangle that was the nearest before; that is good enough if it is near.
+  Probe probe(std::size_t p) const {
+    const Vec3 x = probe_point(p);
+    if (probes_[p].place >= 0) {
+      const auto& [a, b, c] = tree_.corners()[at(probes_[p].place)];
+      const double squared = (nearest_on_triangle(x, a, b, c) - x).squaredNorm();
+      if (squared < near_) return {probes_[p].place, squared};
+    }
+    const TriangleTree::Nearest found = tree_.nearest_from(x, probes_[p].place);
+    return {found.place, found.squared_distance};
+  }
+
+  /// Calls visit(probe, share of the node in it) for the probes that move with a node.
+  template <typename Visit>
+  void visit_probes(std::size_t b, const Visit& visit) const {
+    visit(b, 1.0);
+    for (const Index e : stars_.edges_of.of(b)) visit(stars_.nodes.size() + at(e), 0.5);
+    for (const Index f : stars_.faces_of.of(b)) visit(stars_.nodes.size() + stars_.edges.size() + at(f), 1.0 / 3);
   }
 
   /// Whether something at the node is further away than the tolerance.
   bool is_wanted(std::size_t b) const {
     double most = 0;
-    probes_.visit_probes(b, [&](std::size_t p, double) { most = std::max(most, probes_[p].squared); });
+    visit_probes(b, [&](std::size_t p, double) { most = std::max(most, probes_[p].squared); });
     for (const Index f : stars_.faces_of.of(b))
-      for (const Index s : samples_.of_face(f)) most = std::max(most, samples_.squared(s));
+      for (const Index s : face_samples_.of(at(f))) most = std::max(most, sample_distances_[at(s)]);
     return most > wanted_;
   }
 
@@ -188,16 +269,15 @@ class BoundaryFit::Fit {
   double energy(std::size_t b, double limit) const {
     double sum = 0;
     for (const Index f : stars_.faces_of.of(b))
-      for (const Index s : samples_.of_face(f)) {
-        double least = samples_.squared_distance(samples_.point(s), f);
+      for (const Index s : face_samples_.of(at(f))) {
+        double least = squared_distance(samples_[at(s)], f);
         if (least > near_)
-          for (const Index g : stars_.faces_of.of(b))
-            least = std::min(least, samples_.squared_distance(samples_.point(s), g));
+          for (const Index g : stars_.faces_of.of(b)) least = std::min(least, squared_distance(samples_[at(s)], g));
         sum += cubed(least);
         if (sum > limit) return sum;
       }
-    probes_.visit_probes(b, [&](std::size_t p, double) {
-      if (sum <= limit) sum += cubed(probes_.measure(p).squared);
+    visit_probes(b, [&](std::size_t p, double) {
+      if (sum <= limit) sum += cubed(probe(p).squared);
     });
     return sum;
   }
@@ -211,17 +291,19 @@ class BoundaryFit::Fit {
       matrix += (share * share * squared) * gap * gap.transpose();
       force += (share * squared * squared) * gap;
     };
-    probes_.visit_probes(b, [&](std::size_t p, double share) {
-      if (probes_[p].number >= 0) add(probes_.foot(p) - probes_.point(p), share);
+    visit_probes(b, [&](std::size_t p, double share) {
+      if (probes_[p].place < 0) return;
+      const Vec3 x = probe_point(p);
+      const auto& [u, v, w] = tree_.corners()[at(probes_[p].place)];
+      add(nearest_on_triangle(x, u, v, w) - x, share);
     });
     const Index own = stars_.nodes[b];
     for (const Index f : stars_.faces_of.of(b)) {
       const auto& [i, j, k] = stars_.faces[at(f)].nodes;
-      for (const Index s : samples_.of_face(f)) {
-        const Vec3& x = samples_.point(s);
-        const Vec3 foot = nearest_on_triangle(x, position(i), position(j), position(k));
+      for (const Index s : face_samples_.of(at(f))) {
+        const Vec3 foot = nearest_on_triangle(samples_[at(s)], position(i), position(j), position(k));
         const double share = barycentric_share(foot, own, stars_.faces[at(f)].nodes);
-        if (share > 0) add(x - foot, share);
+        if (share > 0) add(samples_[at(s)] - foot, share);
       }
     }
     matrix.diagonal().array() += kDamping * matrix.trace() + 1e-300;
@@ -243,12 +325,12 @@ class BoundaryFit::Fit {
     if (step.norm() > longest) step *= longest / step.norm();
     if (!(step.squaredNorm() > 1e-8 * wanted_)) return false;
     const double limit = 0.98 * energy(b, 1e300);
-    return try_step(b, step, [&] { return energy(b, limit) < limit; }) > 0;
+    return try_step(b, step, [&] { return energy(b, limit) < limit; });
   }
 
-  /// All of the step, half, a quarter ... as the star and `accept` allow; the share taken, 0 if there was no way.
+  /// All of the step, half, a quarter ... as the star and `accept` allow; whether there was a way.
   template <typename Accept>
-  double try_step(std::size_t b, const Vec3& step, const Accept& accept) {
+  bool try_step(std::size_t b, const Vec3& step, const Accept& accept) {
     Vec3& x = position_of(b);
     const Vec3 from = x;
     CosineRange bounds = stars_.cosines(mesh_, b);
@@ -256,25 +338,28 @@ class BoundaryFit::Fit {
     bounds.high = std::max(bounds.high, std::cos(params_.min_dihedral * std::numbers::pi / 180));
     for (double share = 1; share > 0.1; share *= 0.5) {
       x = from + share * step;
-      if (stars_.cosines(mesh_, b).is_within(bounds) && accept()) return share;
+      if (stars_.cosines(mesh_, b).is_within(bounds) && accept()) return true;
     }
     x = from;
-    return 0;
+    return false;
   }
 
   TetMesh& mesh_;
+  const TriangleTree& tree_;
+  const std::vector<Vec3>& samples_;
   const BoundaryFitParams& params_;
   const Threads& threads_;
   FitMemory* memory_;  ///< may be null
   BoundaryStars stars_;
-  double near_, wanted_;  ///< squared, m^2
-  SamplePairing samples_;
-  BoundaryProbes probes_;
-  std::vector<std::uint8_t> moved_;    ///< per boundary node: since the last measurement
-  std::vector<std::uint8_t> settled_;  ///< per boundary node: could not move, and nothing near it changed since
+  double near_, wanted_;                  ///< squared, m^2
+  std::vector<Index> sample_faces_;       ///< per sample: the nearest face
+  std::vector<double> sample_distances_;  ///< to it, squared
+  CompressedList face_samples_;
+  std::vector<Probe> probes_;
+  std::vector<bool> moved_;  ///< per boundary node: since the last search
 };
 
-BoundaryFit::BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, std::span<const Vec3> samples,
+BoundaryFit::BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples,
                          const BoundaryFitParams& params, const Threads& threads, FitMemory* memory)
     : fit_(std::make_unique<Fit>(stuffed, tree, samples, params, threads, memory)) {
   fit_->run();

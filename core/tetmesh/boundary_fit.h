@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -37,7 +36,7 @@ struct BoundaryGap {
 class BoundaryFit {
  public:
   /// Fits. tree: of the surface; samples: points of it; memory: read, then replaced. All are borrowed while this lives.
-  BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, std::span<const Vec3> samples,
+  BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples,
               const BoundaryFitParams& params, const Threads& threads, FitMemory* memory = nullptr);
   ~BoundaryFit();
   BoundaryFit(const BoundaryFit&) = delete;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <span>
 
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
@@ -48,15 +47,7 @@ constexpr int kPatience = 12;
 constexpr double kLooseShare = 0.02;
 
 /// The error falls with the number of tetrahedra to about this power; met on smooth and sharp bodies alike.
-constexpr double kErrorOverCount = 0.6;
-
-/// After so many rounds the number of elements is known but for a factor that depends on the surface, and on the error
-/// little. A filling that will have less than this share of the wanted number is given up there.
-constexpr int kTrialRounds = 4;
-constexpr double kUsualGrowth = 1.2, kTooFew = 0.88;
-
-/// From this share of the wanted number on only gaps are mended that keep a filling from its end.
-constexpr double kNearlyFull = 0.85;
+constexpr double kErrorOverCount = 0.75;
 
 /// So many errors are tried for a count. A filling that has it ends where no gap is wider than so many errors: what
 /// comes after mends single places, and may add and spoil others.
@@ -66,8 +57,8 @@ constexpr double kNearlyKept = 1.3;
 /// How near to the wanted number is near enough.
 constexpr double kCountTolerance = 0.05;
 
-/// Samples are this many budgets apart, those of the first rounds so many.
-constexpr double kSampleStep = 2.0, kFirstSampleStep = 4.0;
+/// Samples are this many budgets apart.
+constexpr double kSampleStep = 2.0;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -103,11 +94,8 @@ struct FilledSurface {
 
 class Filling {
  public:
-  /// growth: of an earlier filling of this surface, if there was one.
-  Filling(const FilledSurface& filled, const ErrorBudgetParams& params, const Threads& threads,
-          std::optional<double> growth = {})
-      : growth_(growth),
-        params_(params),
+  Filling(const FilledSurface& filled, const ErrorBudgetParams& params, const Threads& threads)
+      : params_(params),
         threads_(threads),
         base_edge_(params.base_edge > 0 ? params.base_edge : kBaseEdge * params.error),
         error_(params.error > 0 ? params.error : base_edge_ / kBaseEdge),
@@ -116,8 +104,7 @@ class Filling {
         sampler_(filled.sampler),
         caps_(filled.caps),
         visible_(find_visible(filled.surface, sampler_, error_, threads)),
-        samples_(sample_surface_once(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)),
-        first_samples_(put_coarse_first(samples_, kFirstSampleStep * error_)) {
+        samples_(sample_surface(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)) {
     for (const Triangle& triangle : filled.surface.triangles)
       octree_.refine(corners(filled.surface.positions, triangle), params.finer);
   }
@@ -129,15 +116,11 @@ class Filling {
       filling = fill();
       std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
       add_loose_pieces(filling.stuffed, gaps);
-      // What looks like an end is looked at again: between samples there may be wider gaps.
-      const bool is_certain = gaps.empty() || (is_near_count(filling) && is_nearly_kept(gaps));
+      const bool is_certain = gaps.empty();
       if (is_certain) gaps = find_gaps(filling.stuffed);
       filling.is_kept = gaps.empty();
-      if (params_.tets > 0) {
-        if (has_ended(filling, gaps, round)) break;
-        if (share_of_count(filling) > kNearlyFull && !is_nearly_kept(gaps)) leave_out_narrow(gaps);
-      }
       const double margin = round < kSingleRounds ? 0.0 : 0.5;
+      if (has_count(filling) && widest(gaps) < kNearlyKept * error_) break;
       if (!gaps.empty() && is_stuck(gaps, round)) break;
       if (round + 1 == rounds || refine(filling.stuffed, gaps, margin)) continue;
       // Samples that no size reaches hide what lies between others.
@@ -146,12 +129,6 @@ class Filling {
     }
     return filling;
   }
-
-  /// Of a search for a count: the number of elements that the error takes in the end, in wanted numbers. A filling that
-  /// will not have it is given up early.
-  double expected_share() const { return expected_share_; }
-  /// By what factor the number of elements grew after the first kTrialRounds.
-  double growth() const { return expected_share_ / trial_share_; }
 
  private:
   static std::array<Vec3, 3> corners(const std::vector<Vec3>& points, const Triangle& triangle) {
@@ -176,35 +153,9 @@ class Filling {
     return visible;
   }
 
-  double share_of_count(const GradedFilling& filling) const {
-    return static_cast<double>(filling.stuffed.mesh.tets.size()) / params_.tets;
-  }
-  bool is_near_count(const GradedFilling& filling) const {
-    return params_.tets > 0 && std::abs(share_of_count(filling) - 1) <= kCountTolerance;
-  }
-  bool is_nearly_kept(const std::vector<BoundaryGap>& gaps) const { return widest(gaps) < kNearlyKept * error_; }
-
-  /// What a filling that has its count but for a little may leave as it is.
-  void leave_out_narrow(std::vector<BoundaryGap>& gaps) const {
-    std::erase_if(
-        gaps, [&](const BoundaryGap& gap) { return (gap.on_surface - gap.on_boundary).norm() < kNearlyKept * error_; });
-  }
-
-  /// Whether a filling on the way to a count is near enough, or will not come near.
-  bool has_ended(const GradedFilling& filling, const std::vector<BoundaryGap>& gaps, int round) {
-    const double share = share_of_count(filling);
-    if (round < kTrialRounds) trial_share_ = share;
-    const double foreseen = trial_share_ * growth_.value_or(kUsualGrowth);
-    expected_share_ = share;
-    if (share > 1 + kCountTolerance) {
-      expected_share_ = std::max(share, foreseen);
-      return true;
-    }
-    if (round + 1 == kTrialRounds && growth_ && foreseen < kTooFew) {
-      expected_share_ = foreseen;
-      return true;
-    }
-    return is_near_count(filling) && is_nearly_kept(gaps);
+  bool has_count(const GradedFilling& filling) const {
+    const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
+    return params_.tets > 0 && std::abs(count / params_.tets - 1) <= kCountTolerance;
   }
 
   /// Whether the widest gap has long been no narrower than before: no size mends it. The rim of a hole can be such a
@@ -257,8 +208,7 @@ class Filling {
     fit_params.tolerance = params_.fit_tolerance * error_ / base_edge_;
     fit_params.sweeps = round < kFirstRounds ? kFirstSweeps : kSweeps;
     if (stuffed.mesh.tets.empty()) return everywhere();
-    const std::span<const Vec3> samples(samples_.data(), round < kFirstRounds ? first_samples_ : samples_.size());
-    const BoundaryFit fitted(stuffed, sampler_.tree(), samples, fit_params, threads_, &memory_);
+    const BoundaryFit fitted(stuffed, sampler_.tree(), samples_, fit_params, threads_, &memory_);
     std::vector<BoundaryGap> gaps = fitted.gaps((round < kFirstRounds ? kFirstLimit : kEnough) * error_);
     leave_out_holes(gaps);
     return gaps;
@@ -328,8 +278,6 @@ class Filling {
     return octree_.cells().size() > before;
   }
 
-  std::optional<double> growth_;
-  double expected_share_ = 1, trial_share_ = 1;
   const ErrorBudgetParams& params_;
   const Threads& threads_;
   double base_edge_, error_;
@@ -341,7 +289,6 @@ class Filling {
   const HoleCaps& caps_;
   SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap
   std::vector<Vec3> samples_;
-  std::size_t first_samples_;  ///< of them: for the first rounds
   FitMemory memory_;
   SurfaceDistance known_;  ///< of the filling before
 };
@@ -350,20 +297,20 @@ class Filling {
 
 namespace {
 
-/// An error with the share of the wanted number of tetrahedra that it takes, as logarithms.
+/// An error with the number of tetrahedra that it takes, as logarithms.
 struct Tried {
-  double error, share;
+  double error, count;
 };
 
 /// The next error to try for a count: between the nearest ones that gave too many and too few, or from one of them by
 /// the usual slope.
-double next_error(const std::optional<Tried>& few, const std::optional<Tried>& many) {
+double next_error(const std::optional<Tried>& few, const std::optional<Tried>& many, double wanted) {
   if (!few || !many) {
     const Tried& known = few ? *few : *many;
-    return known.error + kErrorOverCount * known.share;
+    return known.error + kErrorOverCount * (known.count - wanted);
   }
   // Not too near to either, lest counts that jump stop the search.
-  const double share = std::clamp(few->share / (few->share - many->share), 0.15, 0.85);
+  const double share = std::clamp((wanted - few->count) / (many->count - few->count), 0.15, 0.85);
   return few->error + share * (many->error - few->error);
 }
 
@@ -371,22 +318,19 @@ GradedFilling fill_to_count(const SurfaceMesh& surface, const ErrorBudgetParams&
   const FilledSurface filled(surface);
   GradedFilling best;
   double best_miss = 1e300, error = std::log(guess_error(surface, params.tets));
-  std::optional<double> growth;
   std::optional<Tried> few, many;
   for (int step = 0; step < kCountSteps && best_miss > kCountTolerance; ++step) {
     ErrorBudgetParams to_error = params;
     to_error.error = std::exp(error);
-    Filling trial(filled, to_error, threads, growth);
-    GradedFilling filling = trial.run();
-    const double expected = std::log(std::max(1e-6, trial.expected_share()));
-    (expected < 0 ? few : many) = Tried{error, expected};
-    if (expected < 0 && !growth) growth = trial.growth();
-    const double miss = std::abs(static_cast<double>(filling.stuffed.mesh.tets.size()) / params.tets - 1);
+    GradedFilling filling = Filling(filled, to_error, threads).run();
+    const double count = std::max(1.0, static_cast<double>(filling.stuffed.mesh.tets.size()));
+    (count < params.tets ? few : many) = Tried{error, std::log(count)};
+    const double miss = std::abs(count / params.tets - 1);
     if (miss < best_miss) {
       best_miss = miss;
       best = std::move(filling);
     }
-    error = next_error(few, many);
+    error = next_error(few, many, std::log(params.tets));
   }
   return best;
 }

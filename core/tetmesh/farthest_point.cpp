@@ -11,9 +11,6 @@ constexpr std::int64_t kGrain = 256;
 /// Triangles that are smaller than this share of the mean edge (of either side, the smaller) are not quartered.
 constexpr double kSmallest = 0.25;
 
-/// Where only what is further than a limit is asked for, a triangle nearer than this share of it is near enough.
-constexpr double kNear = 0.6;
-
 /// A point and the triangle of the tree that is nearest to it.
 struct Probe {
   Vec3 point;
@@ -24,27 +21,19 @@ struct Probe {
 class Search {
  public:
   /// lower: a distance known to be reached. smallest: triangles with shorter edges are not quartered, m.
-  /// enough: of triangles nearer than that any will do, m.
-  Search(const TriangleTree& tree, double lower, double smallest, double tolerance = kFarthestTolerance,
-         double enough = 0)
-      : tree_(tree), best_(lower), smallest_(smallest), tolerance_(tolerance), enough_(enough) {}
+  Search(const TriangleTree& tree, double lower, double smallest, double tolerance = kFarthestTolerance)
+      : tree_(tree), best_(lower), smallest_(smallest), tolerance_(tolerance) {}
 
-  /// guess: a place in the tree that may be near; -1: none. Of triangles nearer than `enough` any will do.
-  static Probe probe(const TriangleTree& tree, const Vec3& point, Index guess, double enough = 0) {
-    const TriangleTree::Nearest found = tree.nearest_from(point, guess, enough * enough);
+  /// guess: a place in the tree that may be near; -1: none.
+  static Probe probe(const TriangleTree& tree, const Vec3& point, Index guess) {
+    const TriangleTree::Nearest found = tree.nearest_from(point, guess);
     return {point, found.place, std::sqrt(found.squared_distance)};
   }
 
   double best() const { return best_; }
-  /// The point that is so far away, if visit() found one.
-  const Vec3& farthest() const { return farthest_; }
 
   void visit(const Probe& a, const Probe& b, const Probe& c) {
-    for (const Probe* p : {&a, &b, &c})
-      if (p->distance > best_) {
-        best_ = p->distance;
-        farthest_ = p->point;
-      }
+    best_ = std::max({best_, a.distance, b.distance, c.distance});
     const double longest = std::sqrt(std::max(
         {(a.point - b.point).squaredNorm(), (b.point - c.point).squaredNorm(), (c.point - a.point).squaredNorm()}));
     if (!(longest > smallest_)) return;
@@ -77,9 +66,7 @@ class Search {
   }
 
  private:
-  Probe middle(const Probe& a, const Probe& b) const {
-    return probe(tree_, 0.5 * (a.point + b.point), a.leaf_place, enough_);
-  }
+  Probe middle(const Probe& a, const Probe& b) const { return probe(tree_, 0.5 * (a.point + b.point), a.leaf_place); }
 
   double upper_bound(const Probe& a, const Probe& b, const Probe& c) const {
     double least = 1e300;
@@ -94,8 +81,7 @@ class Search {
   }
 
   const TriangleTree& tree_;
-  double best_, smallest_, tolerance_, enough_;
-  Vec3 farthest_ = Vec3::Zero();
+  double best_, smallest_, tolerance_;
 };
 
 double edge_sum(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -112,9 +98,9 @@ double mean_edge(const std::vector<Vec3>& points, const std::vector<Triangle>& t
   return std::min(own / static_cast<double>(triangles.size()), other / static_cast<double>(tree.corners().size())) / 3;
 }
 
-/// Nearest places of all points that a triangle uses; of triangles nearer than `enough` any will do.
+/// Nearest places of all points that a triangle uses.
 std::vector<Probe> probe_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                                const TriangleTree& tree, double enough, const Threads& threads) {
+                                const TriangleTree& tree, const Threads& threads) {
   std::vector<bool> used(points.size(), false);
   for (const Triangle& triangle : triangles)
     for (const Index v : triangle) used[static_cast<std::size_t>(v)] = true;
@@ -123,7 +109,7 @@ std::vector<Probe> probe_points(const std::vector<Vec3>& points, const std::vect
     Index guess = -1;
     for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
       if (!used[v]) continue;
-      probes[v] = Search::probe(tree, points[v], guess, enough);
+      probes[v] = Search::probe(tree, points[v], guess);
       guess = probes[v].leaf_place;
     }
   });
@@ -135,7 +121,7 @@ std::vector<Probe> probe_points(const std::vector<Vec3>& points, const std::vect
 double farthest_distance(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                          const TriangleTree& tree, const Threads& threads) {
   if (tree.nodes().empty() || triangles.empty()) return 0;
-  const std::vector<Probe> probes = probe_points(points, triangles, tree, 0, threads);
+  const std::vector<Probe> probes = probe_points(points, triangles, tree, threads);
   double lower = 0;
   for (const Probe& probe : probes) lower = std::max(lower, probe.distance);
   const double smallest = kSmallest * mean_edge(points, triangles, tree);
@@ -166,19 +152,14 @@ namespace {
 template <typename With>
 void visit_far(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles, const TriangleTree& tree,
                double limit, const Threads& threads, const With& with) {
-  const std::vector<Probe> probes = probe_points(points, triangles, tree, kNear * limit, threads);
-  const Search search(tree, limit, kSmallest * mean_edge(points, triangles, tree), kFarthestTolerance, kNear * limit);
+  const std::vector<Probe> probes = probe_points(points, triangles, tree, threads);
+  const Search search(tree, limit, kSmallest * mean_edge(points, triangles, tree));
   threads.for_chunks(static_cast<std::int64_t>(triangles.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::vector<Vec3> far;
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
       far.clear();
       search.collect(corner(0), corner(1), corner(2), far);
-      if (!far.empty()) {
-        Search farthest = search;
-        farthest.visit(corner(0), corner(1), corner(2));
-        far.push_back(farthest.farthest());
-      }
       with(t, far);
     }
   });

@@ -29,7 +29,7 @@ double farthest_of_triangle(const std::array<Vec3, 3>& corners, const TriangleTr
                             double tolerance);
 
 /// Points of the triangles that are further than `limit` from the tree, found in the same way: where a triangle has
-/// some, at least one of them, and then the farthest. In the order of the triangles.
+/// some, at least one of them. In the order of the triangles.
 std::vector<Vec3> find_far_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                   const TriangleTree& tree, double limit, const Threads& threads);
 

@@ -286,6 +286,8 @@ TEST(TimeStep, GuessesSaveIterationsAndNoAccuracy) {
     params.integrator = integrator;
     SolverParams exact = exact_params();
     exact.integrator = integrator;
+    // One solve a step: iterated steps end at the same place whatever they begin with.
+    params.linearize = exact.linearize = integrator == Integrator::Euler ? Linearize::Start : Linearize::Predictor;
     const BodyModel model = testing::body_model(test_support::make_bar(4), {1e5, 0.4, 1000, 0.1, 0.002});
     const std::vector<Index> end = testing::select_nodes(model.mesh, [](const Vec3& x) { return x[0] < 1e-9; });
     BodyModel held = model;
