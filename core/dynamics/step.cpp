@@ -6,7 +6,9 @@
 /// Solved is the change d = v - v' by S d = right side - S v', S = M + t Ma + sum t (r + b) K_e. The paper's implicit
 /// Euler at the step's start has t = r = h and x* = x' = x: eq. (2). Unlike there, where displacements are solved for
 /// and the force correction f0 stands beside K, the elastic force is evaluated by itself: it is the same force, but
-/// exact for a capped dilatation and without the cancellation of K x against f0.
+/// exact for a capped dilatation and without the cancellation of K x against f0. Beside t r K stands t r G, the
+/// stiffness that tension adds, where leaving it out could make the body flutter (core/elasticity/tension.h): it enters
+/// matrix and right side alike, so at rest nothing changes.
 #include <cmath>
 
 #include <fmt/format.h>

@@ -26,8 +26,8 @@ struct StepWork {
   double kept_change = -1;        ///< StepSource::kept_change
 };
 
-/// t f + M (base velocities) - (M + t C) v - t K (seconds.position v + offsets) for v = velocities + change and t =
-/// seconds.velocity; zero on held nodes. change: empty if it is zero; end_velocities: v. On the way parts.step_terms.
+/// t f + M (base velocities) - (M + t C) v - t (K + G) (seconds.position v + offsets) for v = velocities + change and t
+/// = seconds.velocity; zero on held nodes. change: empty if it is zero; end_velocities: v. On the way parts.step_terms.
 void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities,
                    std::span<const Vec3> change, std::span<Vec3> residual);
 /// work.rotations at work.positions, shared where recovery acts; says in the log where it begins and ends.

@@ -2,13 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <experimental/simd>
 
-#include "core/elasticity/lane_elements.h"
-#include "core/elasticity/lane_tension.h"
-#include "core/elasticity/step_terms.h"
+#include "core/elasticity/batch_tension.h"
+#include "core/elasticity/lane_source.h"
 
 namespace softreel {
 namespace {
@@ -42,19 +40,6 @@ Lanes load(const double* from) {
   return Lanes(from, stdx::vector_aligned);
 }
 
-/// Dilatation stress and its slope, as ElasticLaw has them.
-struct Pressure {
-  Lanes value, slope;
-};
-
-[[gnu::always_inline]] inline Pressure find_pressure(const ElementBatch& batch, const Lanes& trace) {
-  const Lanes lambda = load(batch.lambda), limit = load(batch.pressure_limit);
-  Pressure pressure{lambda * trace, lambda};
-  where(pressure.value > limit, pressure.slope) = Lanes(0);
-  where(pressure.value > limit, pressure.value) = limit;
-  return pressure;
-}
-
 /// t sigma + t C : O + s C : D with D = Q^T grad v, O that of the offsets and C : D = 2 mu sym(D) + slope tr(D) I, in
 /// the frame of the rest shape.
 struct Stress {
@@ -63,19 +48,23 @@ struct Stress {
   bool tense = false;  ///< the positions may hold tension above the limit
 };
 
-[[gnu::always_inline]] inline Lanes trace(const Symmetric& s) {
-  return s[0] + s[3] + s[5];
-}
-
 /// Q^T G, symmetric part.
 [[gnu::always_inline]] inline Symmetric find_strain(const Matrix& rotation, const Matrix& gradient) {
   return detail::symmetric_part(detail::transposed_product(rotation, gradient));
 }
 
-[[gnu::always_inline]] inline Symmetric find_elastic_strain(const Matrix& rotation, const Matrix& F) {
-  Symmetric strain = find_strain(rotation, F);
-  for (const std::size_t k : {0, 3, 5}) strain[k] -= Lanes(1);
-  return strain;
+/// Lanes where a kappa_k may exceed `least`: by a bound on the sum of two principal strains that is sharp where two of
+/// them are equal. None is below their mean by more than the root of two thirds of the sum of their deviators' squares.
+[[gnu::always_inline]] inline Lanes::mask_type may_be_tense(const Symmetric& e, const Lanes& pressure,
+                                                            const Lanes& two_mu, const Lanes& least) {
+  const Lanes two(2), mean = detail::trace(e) * Lanes(1.0 / 3);
+  const Lanes x = e[0] - mean, y = e[3] - mean, z = e[5] - mean;
+  const Lanes square = (x * x + y * y + z * z) + two * (e[1] * e[1] + e[2] * e[2] + e[4] * e[4]);
+  // (2 mu - least) (s_i + s_j) > 2 (2 mu - p) for s_i + s_j = 2 + 2 mean + sqrt(2 square / 3), without the root.
+  const Lanes factor = two_mu - least, missing = two * ((two_mu - pressure) - factor * (mean + Lanes(1)));
+  const auto reached = missing <= Lanes(0) || factor * factor * square >= Lanes(1.5) * (missing * missing);
+  // Without a cap p may exceed 2 mu: then kappa is greatest where stretches are least.
+  return (factor > Lanes(0) && reached) || pressure > two_mu;
 }
 
 /// kOffsets: there are offsets, whose gradient is `offset_gradient`. least: tension limit, Pa.
@@ -83,68 +72,21 @@ template <bool kOffsets>
 [[gnu::always_inline]] inline Stress find_stress(const ElementBatch& batch, const Matrix& rotation, const Matrix& F,
                                                  const Matrix& velocity_gradient, const Matrix& offset_gradient,
                                                  const Lanes& seconds, const Lanes& share, const Lanes& least) {
-  Symmetric strain = find_elastic_strain(rotation, F);
+  Symmetric strain = detail::find_elastic_strain(rotation, F);
   const Symmetric D = find_strain(rotation, velocity_gradient);
-  const Lanes mu = load(batch.mu), two_mu = mu + mu;
-  Pressure pressure = find_pressure(batch, trace(strain));
-  const bool tense =
-      stdx::any_of(detail::may_be_tense(detail::TensionSource<Lanes>{strain, pressure.value, mu, least}));
+  const Lanes two_mu = load(batch.mu) + load(batch.mu);
+  detail::Pressure<Lanes> pressure = detail::find_pressure(batch, detail::trace(strain), stdx::vector_aligned);
+  const bool tense = stdx::any_of(may_be_tense(strain, pressure.value, two_mu, least));
   if constexpr (kOffsets) {
     const Symmetric O = find_strain(rotation, offset_gradient);
     for (std::size_t k = 0; k < 6; ++k) strain[k] += O[k];
-    pressure.value += pressure.slope * trace(O);
+    pressure.value += pressure.slope * detail::trace(O);
   }
-  const Lanes mean = seconds * pressure.value + share * (pressure.slope * trace(D));
+  const Lanes mean = seconds * pressure.value + share * (pressure.slope * detail::trace(D));
   const auto deviator = [&](std::size_t k) { return two_mu * (seconds * strain[k] + share * D[k]); };
   return {{mean + deviator(0), deviator(1), deviator(2), mean + deviator(3), deviator(4), mean + deviator(5)},
           pressure.slope,
           tense};
-}
-
-[[gnu::always_inline]] inline Lanes find_damping(const StepSource& source, std::size_t first) {
-  const std::size_t last = source.rotations.size() - 1;
-  return Lanes([&](auto lane) { return source.damping_stiffness[std::min(first + lane, last)]; });
-}
-
-/// Tension limits of the batch that starts at element `first`, Pa; infinite without any.
-[[gnu::always_inline]] inline Lanes find_least_tension(const StepSource& source, std::size_t first) {
-  if (source.tension_limits.empty()) return std::numeric_limits<double>::infinity();
-  return load(source.tension_limits.data() + first) *
-         Lanes(1 / std::sqrt(source.seconds.velocity * source.seconds.position));
-}
-
-/// What tension above the limit adds to a batch: to the stress by its nodes' motion, and to the matrix.
-struct Curvature {
-  Vector moment;  ///< w, with which the stress in the frame of the rest shape gains [w]x
-  Symmetric C;    ///< in space, over the share of the gradients
-};
-
-/// Apart from the kernel, and from memory again, so that batches without tension keep what they have in registers.
-[[gnu::noinline]] Curvature find_curvature(const StepSource& source, const ElementBatch& batch, std::size_t first) {
-  const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
-  const Symmetric strain =
-      find_elastic_strain(Q, detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned));
-  const Lanes mu = load(batch.mu), reach(source.seconds.position);
-  detail::PrincipalAxes<Lanes> tension = detail::find_tension(detail::TensionSource<Lanes>{
-      strain, find_pressure(batch, trace(strain)).value, mu, find_least_tension(source, first)});
-  const auto curl_of = [&](std::span<const Vec3> vectors) {
-    return detail::curl(detail::transposed_product(Q, detail::gradient<Lanes>(batch, vectors, stdx::vector_aligned)));
-  };
-  Vector way = curl_of(source.velocities);
-  for (Lanes& w : way) w *= reach;
-  if (!source.offsets.empty()) {
-    const Vector offset = curl_of(source.offsets);
-    for (std::size_t c = 0; c < 3; ++c) way[c] += offset[c];
-  }
-  for (Lanes& w : way) w *= Lanes(source.seconds.velocity);
-  Curvature curvature{detail::product(detail::matrix_of(tension), way), {}};
-  const Lanes share = reach / ((reach + find_damping(source, first)) * mu);
-  for (std::size_t k = 0; k < 3; ++k) {
-    tension.values[k] *= share;
-    tension.axes[k] = detail::product(Q, tension.axes[k]);
-  }
-  curvature.C = detail::matrix_of(tension);
-  return curvature;
 }
 
 using NodeVectors = std::array<Vector, 4>;
@@ -191,6 +133,17 @@ using NodeVectors = std::array<Vector, 4>;
   return any;
 }
 
+/// A += Q [w]x, whose rows are those of Q times w, the moment of a batch.
+[[gnu::always_inline]] inline void add_moment(const Matrix& Q, const BatchTension& tension, Matrix& A) {
+  const Vector w = detail::load_vector<Lanes>(tension.moment, stdx::vector_aligned);
+  for (std::size_t r = 0; r < 3; ++r) {
+    const Lanes &x = Q[3 * r], &y = Q[3 * r + 1], &z = Q[3 * r + 2];
+    A[3 * r] += y * w[2] - z * w[1];
+    A[3 * r + 1] += z * w[0] - x * w[2];
+    A[3 * r + 2] += x * w[1] - y * w[0];
+  }
+}
+
 /// The curvatures of a slab's elements: no memory as long as there are none.
 class StoredCurvatures {
  public:
@@ -199,13 +152,11 @@ class StoredCurvatures {
       : stored_(stored), first_batch_(first_batch), kept_(kept) {}
 
   /// Replaces those of the first `elements` lanes of batch b that change; true if there are any.
-  bool store(std::size_t b, const Symmetric& C, std::size_t elements) {
+  bool store(std::size_t b, const BatchTension& tension, std::size_t elements) {
     if (stored_.empty()) stored_.resize(kSlabBatches * kElementLanes * kCurvatureFloats, 0.0F);
     bool any = false;
-    alignas(32) double entries[6][kElementLanes];
-    for (std::size_t k = 0; k < 6; ++k) C[k].copy_to(entries[k], stdx::vector_aligned);
     for (std::size_t lane = 0; lane < elements; ++lane) {
-      const auto entry = [&](std::size_t k) { return static_cast<float>(entries[k][lane]); };
+      const auto entry = [&](std::size_t k) { return static_cast<float>(tension.curvature[k][lane]); };
       any |=
           replace({entry(0), entry(1), entry(2), 0, entry(1), entry(3), entry(4), 0, entry(2), entry(4), entry(5), 0},
                   rows(b, lane));
@@ -277,20 +228,20 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
     const ElementBatch& batch = body.batches[b];
     const std::size_t first = kElementLanes * b;
     const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
-    const Lanes share = seconds * (reach + find_damping(source, first));
+    const Lanes share = seconds * (reach + detail::find_damping<Lanes>(source, first));
     const Matrix F = detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned);
     const Matrix G = detail::gradient<Lanes>(batch, source.velocities, stdx::vector_aligned);
     Matrix offset_gradient{};
     if constexpr (kOffsets) offset_gradient = detail::gradient<Lanes>(batch, source.offsets, stdx::vector_aligned);
-    const Stress stress =
-        find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share, find_least_tension(source, first));
+    const Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share,
+                                                detail::find_least_tension<Lanes>(source, first, stdx::vector_aligned));
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;
     Matrix T = detail::product(Q, stress.value), scaled = Q;
     const std::size_t count = std::min(kElementLanes, elements - first);
     if (stress.tense) {
-      const Curvature curvature = find_curvature(source, batch, first);
-      detail::add_cross_product(Q, curvature.moment, T);
-      changed |= curvatures.store(b, curvature.C, count);
+      const BatchTension tension = find_batch_tension(source, batch, first);
+      add_moment(Q, tension, T);
+      changed |= curvatures.store(b, tension, count);
     } else {
       changed |= curvatures.clear(b, count);
     }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kElementGrain = 1024;
 
-/// False where no kappa_k exceeds `least`; see may_be_tense of core/elasticity/lane_tension.h.
+/// False where no kappa_k exceeds `least`; the twin of that in the kernel of a step.
 bool may_be_tense(const ElasticLaw& law, const Mat3& strain, double least) {
   const double mean = strain.trace() / 3, p = law.pressure(strain.trace());
   const double sum = 2 + 2 * mean + std::sqrt(2.0 / 3 * (strain - mean * Mat3::Identity()).squaredNorm());

@@ -96,10 +96,13 @@ void study_one_solve(const BenchOptions& options, Report& report) {
     const char* name;
     Linearize linearize;
     int steps_per_second;
+    Integrator integrator = Integrator::Euler;
   };
   constexpr Stepping kSteppings[] = {{"one solve, 24 a second", Linearize::Auto, 24},
                                      {"one solve, 96 a second", Linearize::Auto, 96},
-                                     {"iterated, 24 a second", Linearize::Iterated, 24}};
+                                     {"iterated, 24 a second", Linearize::Iterated, 24},
+                                     {"BDF2, 24 a second", Linearize::Auto, 24, Integrator::Bdf2},
+                                     {"BDF2, 96 a second", Linearize::Auto, 96, Integrator::Bdf2}};
   Table table{"stability_one_solve",
               "Largest of the stretches 1.1, 1.25, 1.5, 2, 3, 4, 8, 20 up to which a bar of the default rotation, with "
               "the cap, comes to rest (0: not even the first)",
@@ -118,6 +121,7 @@ void study_one_solve(const BenchOptions& options, Report& report) {
       for (const Stepping& stepping : kSteppings) {
         SolverParams params;
         params.linearize = stepping.linearize;
+        params.integrator = stepping.integrator;
         Verdict verdict;
         double calm = 0;
         for (const HeldPose& pose :

@@ -182,7 +182,8 @@ TEST(Render, APullWithoutBoundNamesFrameBodyAndPullAndKeepsTheFramesBefore) {
   const std::string more = "--quiet --set 'gravity.acceleration=[0,0,0]' --set body.ball.pull[0].stiffness=";
   const Outcome outcome = run(fmt::format("softreel render {0}/shot.toml --output {0}/out {1}1e200", folder, more));
   EXPECT_EQ(outcome.status, 1);
-  for (const char* part : {"frame 2", "\"ball\"", "body.ball.pull[0]", "1e+200 N/m", "its force is not finite", "Accepted"})
+  for (const char* part :
+       {"frame 2", "\"ball\"", "body.ball.pull[0]", "1e+200 N/m", "its force is not finite", "Accepted"})
     EXPECT_NE(outcome.err.find(part), std::string::npos) << part << "\n" << outcome.err;
   EXPECT_TRUE(exists(folder + "/out/ball.0001.png"));
   EXPECT_FALSE(exists(folder + "/out/ball.0002.png"));
