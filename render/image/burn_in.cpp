@@ -5,20 +5,6 @@
 #include "render/image/text.h"
 
 namespace softreel {
-namespace {
-
-/// The text, or as much of it as is no wider, with dots.
-std::string shortened(std::string text, float height, float width) {
-  if (text_width(text, height) <= width) return text;
-  while (!text.empty() && text_width(text + "...", height) > width) {
-    // Whole characters of UTF-8 only.
-    while (text.size() > 1 && static_cast<unsigned char>(text.back()) >> 6 == 0x2) text.pop_back();
-    text.pop_back();
-  }
-  return text.empty() ? "" : text + "...";
-}
-
-}  // namespace
 
 void burn_in(DisplayImage& image, const BurnIn& words) {
   TextStyle style;
@@ -30,7 +16,7 @@ void burn_in(DisplayImage& image, const BurnIn& words) {
   const float y = static_cast<float>(image.height) - margin - style.height;
   const float right = static_cast<float>(image.width) - margin - text_width(words.right, style.height);
   draw_text(image, right, y, words.right, style);
-  draw_text(image, margin, y, shortened(words.left, style.height, right - 2 * margin), style);
+  draw_text(image, margin, y, shortened_text(words.left, style.height, right - 2 * margin), style);
 }
 
 }  // namespace softreel

@@ -40,12 +40,15 @@ DisplayImage contact_sheet(const std::vector<SheetPicture>& pictures, const Shee
   DisplayImage sheet{columns * wide + (columns + 1) * kGap, top + rows * (high + kCaption) + kGap / 2, {}};
   sheet.pixels.resize(3 * static_cast<std::size_t>(sheet.width) * static_cast<std::size_t>(sheet.height));
   fill_rectangle(sheet, 0, 0, sheet.width, sheet.height, Vec3f::Constant(kBackground));
-  draw_text(sheet, kGap, 0.5f * (kTitle - 18), style.title, {.height = 18, .color = Vec3f::Constant(0.92f)});
+  draw_text(sheet, kGap, 0.5f * (kTitle - 18),
+            shortened_text(style.title, 18, static_cast<float>(sheet.width - 2 * kGap)),
+            {.height = 18, .color = Vec3f::Constant(0.92f)});
   for (std::size_t k = 0; k < small.size(); ++k) {
     const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
     const int x = kGap + column * (wide + kGap), y = top + row * (high + kCaption);
     place(sheet, small[k], x, y);
-    draw_text(sheet, static_cast<float>(x), static_cast<float>(y + high + 7), pictures[k].caption,
+    draw_text(sheet, static_cast<float>(x), static_cast<float>(y + high + 7),
+              shortened_text(pictures[k].caption, 10, static_cast<float>(wide)),
               {.height = 10, .color = Vec3f::Constant(0.7f)});
   }
   return sheet;

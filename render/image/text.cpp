@@ -136,6 +136,16 @@ float text_width(std::string_view text, float height) {
   return std::max(0.0f, cells - 1) * height / kRows;
 }
 
+std::string shortened_text(std::string text, float height, float width) {
+  if (text_width(text, height) <= width) return text;
+  while (!text.empty() && text_width(text + "...", height) > width) {
+    // Whole characters of UTF-8 only.
+    while (text.size() > 1 && static_cast<unsigned char>(text.back()) >> 6 == 0x2) text.pop_back();
+    text.pop_back();
+  }
+  return text.empty() ? "" : text + "...";
+}
+
 void draw_text(DisplayImage& image, float x, float y, std::string_view text, const TextStyle& style) {
   CHECK(style.height > 0);
   const float cell = style.height / kRows;

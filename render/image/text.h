@@ -4,6 +4,7 @@
 /// strokes of a round pen, so that they are smooth at every size.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "core/base/types.h"
@@ -22,6 +23,9 @@ struct TextStyle {
 /// Pixels from the left edge of the first letter to the right edge of the last.
 /// text: UTF-8; has ASCII, degree and micro signs; other characters are drawn as an empty box.
 float text_width(std::string_view text, float height);
+
+/// The text, or as much of its beginning as is no wider than `width` pixels, with dots; empty if that is nothing.
+std::string shortened_text(std::string text, float height, float width);
 
 /// Draws one line. x, y: pixels, top left corner of its capitals, row 0 on top; what leaves the picture is cut off.
 void draw_text(DisplayImage& image, float x, float y, std::string_view text, const TextStyle& style);

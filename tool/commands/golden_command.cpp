@@ -118,8 +118,11 @@ class GoldenShot {
     const GoldenCause cause = find_cause(record_, frame, settings_, now.frames[frame]);
     if (result.changed || (record_ && !cause.same_geometry)) result.cause = cause.words;
     const std::string line = fmt::format("{}: {}", golden_path(frame), result.verdict);
+    const std::string actual = outputs_.frame_path(frame, "actual.png");
     if (result.changed)
-      session_.console().warn(line + (result.cause.empty() ? "" : "\n  " + result.cause));
+      session_.console().warn(line +
+                              (result.golden.empty() ? "" : "\n  see " + actual + " and the difference beside it") +
+                              (result.cause.empty() ? "" : "\n  " + result.cause));
     else if (!result.cause.empty())
       session_.console().info(line + "; but " + result.cause);
     return result;
@@ -143,8 +146,8 @@ class GoldenShot {
     result.now = encode_png(picture);
     if (!difference.same_size) {
       result.changed = true;
-      result.verdict = fmt::format("has {} x {} pixels, the frame has {} x {}; see {}", golden.width, golden.height,
-                                   picture.width, picture.height, actual);
+      result.verdict = fmt::format("has {} x {} pixels, the frame has {} x {}", golden.width, golden.height,
+                                   picture.width, picture.height);
       write_file(actual, result.now);
       return;
     }
@@ -161,7 +164,6 @@ class GoldenShot {
     result.difference = encode_png(flip_picture(map));
     write_file(actual, result.now);
     write_file(outputs_.frame_path(result.frame, "difference.png"), result.difference);
-    result.verdict += fmt::format("; see {} and the difference beside it", actual);
   }
 
   const GoldenOptions& options_;

@@ -18,6 +18,7 @@ body { background: #17181b; color: #d8d9dc; font: 15px/1.5 system-ui, sans-serif
 h1 { font-size: 1.5em; font-weight: 600; } h2 { font-size: 1.15em; font-weight: 600; margin-top: 2.2em; }
 table { border-collapse: collapse; width: 100%; } td, th { text-align: left; padding: .35em .8em .35em 0;
   border-bottom: 1px solid #303238; vertical-align: top; } th { font-weight: 600; color: #9a9ca3; }
+td:nth-child(-n+2) { white-space: nowrap; }
 .changed { color: #ff9d5c; } .same { color: #7fc98f; } .cause { color: #f0d9a8; }
 figure { margin: 1em 0; } figcaption { color: #9a9ca3; margin-top: .4em; }
 .pair { position: relative; line-height: 0; --at: 50%; }

@@ -72,6 +72,63 @@ TEST(Flip, ConstantColoursGiveTheValuesOfTheFormulas) {
   EXPECT_NEAR(error({119, 119, 119}, {128, 128, 128}), redistributed(53.585 - 50.034), 1e-3);
 }
 
+/// FLIP at one pixel by the paper's sums over two-dimensional kernels, as they stand there; no pixel near the border.
+double direct_flip(const DisplayImage& a, const DisplayImage& b, int x0, int y0) {
+  constexpr double kPpd = 67;
+  const auto opponent = [](const DisplayImage& image, int x, int y) {
+    return flip_opponent(decoded(&image.pixels[3 * static_cast<std::size_t>(y * image.width + x)]));
+  };
+  const auto seen = [&](const DisplayImage& image) {
+    Vec3f out;
+    for (int c = 0; c < 3; ++c) {
+      double sum = 0, weights = 0;
+      for (int dy = -10; dy <= 10; ++dy)
+        for (int dx = -10; dx <= 10; ++dx) {
+          const double squared = (dx * dx + dy * dy) / (kPpd * kPpd);
+          const auto g = [&](double scale, double b_) {
+            return scale * std::sqrt(M_PI / b_) * std::exp(-M_PI * M_PI * squared / b_);
+          };
+          const double w = c == 0 ? g(1, 0.0047) : c == 1 ? g(1, 0.0053) : g(34.1, 0.04) + g(13.5, 0.025);
+          sum += w * static_cast<double>(opponent(image, x0 + dx, y0 + dy)[c]);
+          weights += w;
+        }
+      out[c] = static_cast<float>(sum / weights);
+    }
+    return flip_lab(linear_of(out));
+  };
+  // Edges (k = 0) and points (k = 1): derivatives of a Gaussian, each sign's weights normed to 1.
+  const auto feature = [&](const DisplayImage& image, int k) {
+    constexpr double kDeviation = 0.5 * 0.082 * kPpd;
+    Vec2 response = Vec2::Zero();
+    for (int axis = 0; axis < 2; ++axis) {
+      double above = 0, below = 0, sum_above = 0, sum_below = 0;
+      for (int dy = -9; dy <= 9; ++dy)
+        for (int dx = -9; dx <= 9; ++dx) {
+          const double u = (axis == 0 ? dx : dy) / kDeviation;
+          const double g = std::exp(-(dx * dx + dy * dy) / (2 * kDeviation * kDeviation));
+          const double w = k == 0 ? -u * g : (u * u - 1) * g;
+          const double y = (static_cast<double>(opponent(image, x0 + dx, y0 + dy).x()) + 16) / 116;
+          (w > 0 ? sum_above : sum_below) += w * y;
+          (w > 0 ? above : below) += std::abs(w);
+        }
+      response[axis] = sum_above / above + sum_below / below;
+    }
+    return response.norm();
+  };
+  const double color = redistributed(static_cast<double>(hyab_distance(seen(a), seen(b))));
+  double change = 0;
+  for (int k = 0; k < 2; ++k) change = std::max(change, std::abs(feature(a, k) - feature(b, k)));
+  return std::pow(color, 1 - std::sqrt(change / std::sqrt(2.0)));
+}
+
+TEST(Flip, EqualsThePapersTwoDimensionalSums) {
+  const DisplayImage a = noisy(disk(30), 12), b = noisy(disk(32.5f), 3);
+  const FlipMap map = flip(a, b);
+  for (const auto& [x, y] :
+       {std::pair(20, 32), std::pair(43, 30), std::pair(32, 20), std::pair(30, 30), std::pair(45, 40)})
+    EXPECT_NEAR(map.errors[static_cast<std::size_t>(y * 64 + x)], direct_flip(a, b, x, y), 1e-3) << x << ", " << y;
+}
+
 TEST(Flip, IsSymmetric) {
   const DisplayImage a = noisy(disk(30), 12), b = disk(31.5f);
   EXPECT_EQ(flip(a, b).errors, flip(b, a).errors);
