@@ -157,7 +157,14 @@ TEST(ColoredSurface, NormalsOfASphereAreSmoothAcrossItsTriangles) {
   for (std::size_t v = 0; v < mesh.times[0].positions.size(); ++v)
     mesh.coloring.coordinates.emplace_back(static_cast<float>(v % columns) / columns,
                                            1 - static_cast<float>(v / columns) / 12);
-  mesh.coloring.triangles = mesh.triangles;
+  // Each corner with a coordinate of its own, as PLY files have them.
+  std::vector<Vec2f> own;
+  for (const Triangle& vertices : mesh.triangles) {
+    const auto first = static_cast<Index>(own.size());
+    mesh.coloring.triangles.push_back({first, first + 1, first + 2});
+    for (const Index v : vertices) own.push_back(mesh.coloring.coordinates[static_cast<std::size_t>(v)]);
+  }
+  mesh.coloring.coordinates = std::move(own);
   mesh.coloring.maps.normal = constant(Vec3f(0.3f, 0.3f, 0.9f));
   const ColoredSurface surface(mesh, 0);
   int compared = 0;
