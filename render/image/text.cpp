@@ -120,7 +120,7 @@ void draw_strokes(DisplayImage& image, const std::vector<Stroke>& strokes, float
       for (const Stroke& stroke : strokes) distance = std::min(distance, distance_to(stroke, point));
       if (style.halo > 0)
         blend(image, x, y, style.shade,
-              style.opacity * std::clamp((pen + style.halo - distance) / style.halo, 0.0f, 1.0f));
+              style.opacity * std::clamp(2 * (pen + style.halo - distance) / style.halo, 0.0f, 1.0f));
       blend(image, x, y, style.color, style.opacity * std::clamp(pen + 0.5f - distance, 0.0f, 1.0f));
     }
 }
@@ -134,6 +134,16 @@ float text_width(std::string_view text, float height) {
     cells += static_cast<float>(columns_of(code, cells_of(code)).count) + 1;
   }
   return std::max(0.0f, cells - 1) * height / kRows;
+}
+
+std::string shortened_text(std::string text, float height, float width) {
+  if (text_width(text, height) <= width) return text;
+  while (!text.empty() && text_width(text + "...", height) > width) {
+    // Whole characters of UTF-8 only.
+    while (text.size() > 1 && static_cast<unsigned char>(text.back()) >> 6 == 0x2) text.pop_back();
+    text.pop_back();
+  }
+  return text.empty() ? "" : text + "...";
 }
 
 void draw_text(DisplayImage& image, float x, float y, std::string_view text, const TextStyle& style) {

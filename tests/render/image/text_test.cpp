@@ -63,6 +63,15 @@ TEST(Text, UnknownCharactersAndBrokenUtf8AreOneBoxEach) {
   EXPECT_EQ(text_width("\xe6", 14), text_width("M", 14)) << "cut off in the middle";
 }
 
+TEST(Text, IsShortenedToWholeCharactersThatFit) {
+  EXPECT_EQ(shortened_text("frame 24", 14, 1000), "frame 24");
+  const std::string cut = shortened_text("\u00b5\u00b5\u00b5\u00b5\u00b5\u00b5\u00b5\u00b5", 14, 60);
+  EXPECT_LE(text_width(cut, 14), 60);
+  EXPECT_TRUE(cut.ends_with("...")) << cut;
+  EXPECT_EQ(cut.size() % 2, 1u) << "two bytes a letter, three dots";
+  EXPECT_EQ(shortened_text("WWW", 14, 3), "");
+}
+
 TEST(Text, WhatLeavesThePictureIsCutOff) {
   DisplayImage image = black(20, 20);
   draw_text(image, -15, 12, "WWWWWWWW", {.height = 20, .halo = 4});
