@@ -140,6 +140,27 @@ TEST(ColoredSurface, NormalMapsTurnTheNormalAlongTheTexturesAxes) {
   EXPECT_TRUE(look(mesh).point.shading_normal.isApprox(Vec3f(-0.6f, 0.8f, 0), 1e-5f));
 }
 
+TEST(ColoredSurface, MapsMoveWithTheSurfaceWhileTheShutterIsOpen) {
+  // The square turns by 90 degrees about z between the two times: half-way, its normal and tangents lie between.
+  MotionMesh mesh = unit_square(matte(0.5f));
+  mesh.coloring.maps.normal = constant(Vec3f(0.6f, 0, 0.8f));
+  mesh.times.push_back(mesh.times[0]);
+  for (Vec3f& p : mesh.times[1].positions) p = Vec3f(-p.y(), p.x(), p.z());
+  for (Vec3f& n : mesh.times[1].normals) n = Vec3f(-n.y(), n.x(), n.z());
+  const ColoredSurface surface(mesh, 0.4f);
+  RayHit hit;
+  hit.mesh = hit.triangle = 0;
+  hit.u = hit.v = 0.3f;
+  Ray ray;
+  ray.time = 0.5f;
+  const float half = std::sqrt(0.5f);
+  ray.direction = Vec3f(half, -half, 0);
+  SurfacePoint point = surface_point(mesh, hit, ray);
+  surface.at(hit, ray, 0.01f, false, point);
+  const Vec3f normal(-half, half, 0), tangent(half, half, 0);
+  EXPECT_TRUE(point.shading_normal.isApprox(0.6f * tangent + 0.8f * normal, 1e-4f)) << point.shading_normal.transpose();
+}
+
 TEST(ColoredSurface, BumpsTiltTheNormalDownhill) {
   MotionMesh mesh = unit_square(matte(0.5f));
   std::vector<float> ramp;
