@@ -203,8 +203,7 @@ Vec3 Creature::color(const Vec3& p) const {
   c = mixed(c, Vec3(0.93, 0.52, 0.43), 0.75 * inside((m - Vec3(0.160, 0.715, 0.160)).norm() - 0.035, 0.05));
   c = mixed(c, Vec3(0.94, 0.62, 0.52),
             inside(ellipsoid(m, {0.305, 0.782, 0.047}, {0.1, 0.046, 0.04}, turned(0, 12, -20)), 0.02));
-  const double bright =
-      std::min({horns(q) - 0.006, crest(p) - 0.001 + (p.y() > 0.2 ? 0.0 : 1.0), tail_leaf(p) - 0.002});
+  const double bright = std::min({horns(q) - 0.006, crest(p) - 0.008, tail_leaf(p) - 0.008});
   c = mixed(c, Vec3(0.96, 0.56, 0.22), inside(bright, 0.014));
   const Vec3 f = mirrored(p);
   for (int toe = -1; toe <= 1; ++toe) {

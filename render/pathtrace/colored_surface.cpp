@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/base/check.h"
 #include "render/scene/color_map.h"
@@ -34,8 +35,8 @@ bool is_mirrored(const TextureGradients& gradients, const Vec3f& normal) {
   return gradients.du.cross(gradients.dv).dot(normal) < 0;
 }
 
-std::size_t tangent_index(Index coordinate, bool mirrored) {
-  return 2 * static_cast<std::size_t>(coordinate) + (mirrored ? 1 : 0);
+std::size_t tangent_index(Index tangent, bool mirrored) {
+  return 2 * static_cast<std::size_t>(tangent) + (mirrored ? 1 : 0);
 }
 
 float corner_angle(const Vec3f& a, const Vec3f& b) {
@@ -106,14 +107,36 @@ std::array<Vec2f, 3> ColoredSurface::coordinates_of(const Triangle& corners) con
           coordinates_[static_cast<std::size_t>(corners[2])]};
 }
 
+void ColoredSurface::join_tangent_corners() {
+  struct Corner {
+    Index vertex;
+    Vec2f at;
+    std::size_t triangle, corner;
+  };
+  std::vector<Corner> all;
+  tangent_corners_.assign(mesh_.triangles.size(), {-1, -1, -1});
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (!has_coordinates(mesh_.coloring.triangles[t])) continue;
+    const std::array<Vec2f, 3> at = coordinates_of(mesh_.coloring.triangles[t]);
+    for (std::size_t k = 0; k < 3; ++k) all.push_back({mesh_.triangles[t][k], at[k], t, k});
+  }
+  const auto key = [](const Corner& c) { return std::tuple(c.vertex, c.at.x(), c.at.y()); };
+  std::sort(all.begin(), all.end(), [&](const Corner& a, const Corner& b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == 0 || key(all[i]) != key(all[i - 1])) ++tangent_count_;
+    tangent_corners_[all[i].triangle][all[i].corner] = static_cast<Index>(tangent_count_ - 1);
+  }
+}
+
 void ColoredSurface::prepare_tangents() {
+  join_tangent_corners();
   for (const MotionMesh::Time& time : mesh_.times) tangents_.push_back(tangents_of(time));
 }
 
 /// After Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008: each triangle's direction, in the tangent plane of
 /// the vertex, weighted by the corner's angle; mirrored triangles apart from the others.
 std::vector<Vec3f> ColoredSurface::tangents_of(const MotionMesh::Time& time) const {
-  std::vector<Vec3f> sums(2 * coordinates_.size(), Vec3f::Zero());
+  std::vector<Vec3f> sums(2 * tangent_count_, Vec3f::Zero());
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const Triangle &vertices = mesh_.triangles[t], &corners = mesh_.coloring.triangles[t];
     if (!has_coordinates(corners)) continue;
@@ -129,7 +152,7 @@ std::vector<Vec3f> ColoredSurface::tangents_of(const MotionMesh::Time& time) con
       const float length = in_plane.norm();
       if (!(length > 0)) continue;
       const float angle = corner_angle(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
-      sums[tangent_index(corners[k], mirrored)] += angle / length * in_plane;
+      sums[tangent_index(tangent_corners_[t][k], mirrored)] += angle / length * in_plane;
     }
   }
   for (Vec3f& sum : sums)
@@ -148,9 +171,10 @@ void ColoredSurface::color(const RayHit& hit, Appearance& appearance) const {
 }
 
 /// The normal that a normal map's texel stands for, on the side of `outward`.
-Vec3f ColoredSurface::mapped_normal(const RayHit& hit, const Ray& ray, const Triangle& corners, bool mirrored,
-                                    const Vec3f& texel, const Vec3f& outward) const {
+Vec3f ColoredSurface::mapped_normal(const RayHit& hit, const Ray& ray, bool mirrored, const Vec3f& texel,
+                                    const Vec3f& outward) const {
   if (texel.x() == 0 && texel.y() == 0) return outward;
+  const Triangle& corners = tangent_corners_[static_cast<std::size_t>(hit.triangle)];
   const auto [step, share] = moment_of(mesh_, ray);
   const auto tangent_at = [&](std::size_t time) {
     const auto corner = [&](std::size_t k) { return tangents_[time][tangent_index(corners[k], mirrored)]; };
@@ -169,14 +193,14 @@ Vec3f ColoredSurface::mapped_normal(const RayHit& hit, const Ray& ray, const Tri
   return norm > 1e-6f ? Vec3f(n / norm) : outward;
 }
 
-void ColoredSurface::bend(const RayHit& hit, const Ray& ray, const Triangle& corners, const TextureGradients& gradients,
+void ColoredSurface::bend(const RayHit& hit, const Ray& ray, const TextureGradients& gradients,
                           const TextureFootprint& footprint, SurfacePoint& point) const {
   const TextureMaps& maps = mesh_.coloring.maps;
   const float side = point.inside ? -1.0f : 1.0f;
   Vec3f normal = side * point.shading_normal;
   if (maps.normal) {
     const bool mirrored = is_mirrored(gradients, side * point.geometric_normal);
-    normal = mapped_normal(hit, ray, corners, mirrored, look_up(*maps.normal, maps.wrap, footprint), normal);
+    normal = mapped_normal(hit, ray, mirrored, look_up(*maps.normal, maps.wrap, footprint), normal);
   }
   if (maps.bump) {
     // Mikkelsen, Bump Mapping Unparametrized Surfaces on the GPU, 2010: less the gradient of the height along the
@@ -212,7 +236,7 @@ Bsdf ColoredSurface::at(const RayHit& hit, const Ray& ray, float width, bool blu
     if (maps.base_color) appearance.base_color = look_up(*maps.base_color, maps.wrap, footprint);
     rough = maps.roughness != nullptr;
     if (rough) appearance.roughness = look_up(*maps.roughness, maps.wrap, footprint);
-    if (maps.normal || maps.bump) bend(hit, ray, corners, gradients, footprint, point);
+    if (maps.normal || maps.bump) bend(hit, ray, gradients, footprint, point);
   }
   color(hit, appearance);
   if (blurred) appearance.roughness = std::max(appearance.roughness, least_roughness_);

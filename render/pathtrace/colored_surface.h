@@ -23,13 +23,13 @@ class ColoredSurface {
  private:
   void prepare_tables();
   void prepare_tangents();
+  void join_tangent_corners();
   std::vector<Vec3f> tangents_of(const MotionMesh::Time& time) const;
   std::array<Vec2f, 3> coordinates_of(const Triangle& corners) const;
   void color(const RayHit& hit, Appearance& appearance) const;
-  void bend(const RayHit& hit, const Ray& ray, const Triangle& corners, const TextureGradients& gradients,
-            const TextureFootprint& footprint, SurfacePoint& point) const;
-  Vec3f mapped_normal(const RayHit& hit, const Ray& ray, const Triangle& corners, bool mirrored, const Vec3f& texel,
-                      const Vec3f& outward) const;
+  void bend(const RayHit& hit, const Ray& ray, const TextureGradients& gradients, const TextureFootprint& footprint,
+            SurfacePoint& point) const;
+  Vec3f mapped_normal(const RayHit& hit, const Ray& ray, bool mirrored, const Vec3f& texel, const Vec3f& outward) const;
   Bsdf material(const Appearance& appearance, bool textured, bool blurred) const;
 
   const MotionMesh& mesh_;
@@ -38,8 +38,11 @@ class ColoredSurface {
   AlbedoTables plain_, plain_blurred_;  ///< of the appearance's own roughness
   std::vector<AlbedoTables> tables_;    ///< at first_roughness_ + k roughness_step_
   float first_roughness_ = 0, roughness_step_ = 1;
-  /// Per time, at 2 texture coordinate + (0 or 1: whether the texture is mirrored there): the direction in which u
-  /// grows, unit, in the tangent plane of the vertex; averaged over triangles, so that it is smooth but for seams.
+  /// Per triangle corner: which tangent is its. Corners on one vertex with equal texture coordinates share one.
+  std::vector<Triangle> tangent_corners_;
+  std::size_t tangent_count_ = 0;
+  /// Per time, at 2 tangent + (0 or 1: whether the texture is mirrored there): the direction in which u grows, unit, in
+  /// the tangent plane of the vertex; averaged over triangles, so that it is smooth but for seams.
   std::vector<std::vector<Vec3f>> tangents_;
 };
 

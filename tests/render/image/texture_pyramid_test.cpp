@@ -77,6 +77,45 @@ TEST_F(TextureFiles, ColoursOfBytesAreDecodedAndDataAreNot) {
   EXPECT_FLOAT_EQ(read_data_texture(file, true).levels.front().texels[0], 128 / 255.0f) << "the green channel";
 }
 
+/// A grey PNG of one row with 16 bits a texel, its data stored without compression.
+std::vector<std::uint8_t> grey_png_16(const std::vector<std::uint16_t>& row) {
+  std::vector<std::uint8_t> bytes{0x89, 'P', 'N', 'G', 13, 10, 26, 10};
+  const auto put = [](std::vector<std::uint8_t>& to, std::size_t value, int count) {
+    for (int k = count - 1; k >= 0; --k) to.push_back(static_cast<std::uint8_t>(value >> (8 * k) & 255));
+  };
+  const auto chunk = [&](const char* type, const std::vector<std::uint8_t>& data) {
+    put(bytes, data.size(), 4);
+    bytes.insert(bytes.end(), type, type + 4);
+    bytes.insert(bytes.end(), data.begin(), data.end());
+    put(bytes, 0, 4);  // the reader of such files asks for no checksum
+  };
+  std::vector<std::uint8_t> header;
+  put(header, row.size(), 4);
+  put(header, 1, 4);
+  header.insert(header.end(), {16, 0, 0, 0, 0});
+  chunk("IHDR", header);
+  const std::size_t length = 1 + 2 * row.size();
+  std::vector<std::uint8_t> data{0x78, 0x01, 0x01};
+  for (const std::size_t n : {length, ~length}) {
+    data.push_back(static_cast<std::uint8_t>(n & 255));
+    data.push_back(static_cast<std::uint8_t>(n >> 8 & 255));
+  }
+  data.push_back(0);
+  for (const std::uint16_t value : row) put(data, value, 2);
+  put(data, 0, 4);
+  chunk("IDAT", data);
+  chunk("IEND", {});
+  return bytes;
+}
+
+TEST_F(TextureFiles, SixteenBitsKeepTheirSteps) {
+  const std::string file = write("h.png", grey_png_16({0, 1, 32768, 65535}));
+  const auto heights = read_data_texture(file, false).levels.front().texels;
+  EXPECT_EQ(heights, std::vector<float>({0, 1 / 65535.0f, 32768 / 65535.0f, 1}));
+  EXPECT_EQ(read_normal_texture(file).levels.front().texels[2], Vec3f(0, 0, 0)) << "the middle is 0";
+  EXPECT_NEAR(read_color_texture(file).levels.front().texels[2].x(), srgb_decode(0.5f), 1e-4f);
+}
+
 TEST_F(TextureFiles, FloatsAreTakenAsTheyAre) {
   const std::string file = exr({0.25f, 0.5f, 0.125f});
   EXPECT_EQ(read_color_texture(file).levels.front().texels[0], Vec3f(0.25f, 0.5f, 0.125f));

@@ -140,6 +140,27 @@ TEST(ColoredSurface, NormalMapsTurnTheNormalAlongTheTexturesAxes) {
   EXPECT_TRUE(look(mesh).point.shading_normal.isApprox(Vec3f(-0.6f, 0.8f, 0), 1e-5f));
 }
 
+TEST(ColoredSurface, MapsMoveWithTheSurfaceWhileTheShutterIsOpen) {
+  // The square turns by 90 degrees about z between the two times: half-way, its normal and tangents lie between.
+  MotionMesh mesh = unit_square(matte(0.5f));
+  mesh.coloring.maps.normal = constant(Vec3f(0.6f, 0, 0.8f));
+  mesh.times.push_back(mesh.times[0]);
+  for (Vec3f& p : mesh.times[1].positions) p = Vec3f(-p.y(), p.x(), p.z());
+  for (Vec3f& n : mesh.times[1].normals) n = Vec3f(-n.y(), n.x(), n.z());
+  const ColoredSurface surface(mesh, 0.4f);
+  RayHit hit;
+  hit.mesh = hit.triangle = 0;
+  hit.u = hit.v = 0.3f;
+  Ray ray;
+  ray.time = 0.5f;
+  const float half = std::sqrt(0.5f);
+  ray.direction = Vec3f(half, -half, 0);
+  SurfacePoint point = surface_point(mesh, hit, ray);
+  surface.at(hit, ray, 0.01f, false, point);
+  const Vec3f normal(-half, half, 0), tangent(half, half, 0);
+  EXPECT_TRUE(point.shading_normal.isApprox(0.6f * tangent + 0.8f * normal, 1e-4f)) << point.shading_normal.transpose();
+}
+
 TEST(ColoredSurface, BumpsTiltTheNormalDownhill) {
   MotionMesh mesh = unit_square(matte(0.5f));
   std::vector<float> ramp;
@@ -157,7 +178,14 @@ TEST(ColoredSurface, NormalsOfASphereAreSmoothAcrossItsTriangles) {
   for (std::size_t v = 0; v < mesh.times[0].positions.size(); ++v)
     mesh.coloring.coordinates.emplace_back(static_cast<float>(v % columns) / columns,
                                            1 - static_cast<float>(v / columns) / 12);
-  mesh.coloring.triangles = mesh.triangles;
+  // Each corner with a coordinate of its own, as PLY files have them.
+  std::vector<Vec2f> own;
+  for (const Triangle& vertices : mesh.triangles) {
+    const auto first = static_cast<Index>(own.size());
+    mesh.coloring.triangles.push_back({first, first + 1, first + 2});
+    for (const Index v : vertices) own.push_back(mesh.coloring.coordinates[static_cast<std::size_t>(v)]);
+  }
+  mesh.coloring.coordinates = std::move(own);
   mesh.coloring.maps.normal = constant(Vec3f(0.3f, 0.3f, 0.9f));
   const ColoredSurface surface(mesh, 0);
   int compared = 0;

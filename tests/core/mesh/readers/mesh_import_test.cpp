@@ -97,5 +97,30 @@ TEST(ImportMesh, PutsTheNodesOfASceneTogetherWithTheirNames) {
   EXPECT_EQ(size_of("skin"), 8U);
 }
 
+TEST(ImportMesh, TakesColoursOfGltfAsTheyAre) {
+  const std::string text =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":1},"indices":2}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"},
+{"bufferView":2,"componentType":5123,"count":3,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36},
+{"buffer":0,"byteOffset":72,"byteLength":6}],
+"buffers":[{"byteLength":80,"uri":"data:application/octet-stream;base64,)"
+      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAACAPwAAAAAAAAAAAAAAAAAAAD8AAAAA"
+      "AACAPgAAgD4AAIA+AAABAAIAAAA="
+      R"("}]})";
+  SurfaceMesh mesh;
+  try {
+    mesh = import_text("colors.gltf", text);
+  } catch (const Error& error) {
+    if (std::string(error.what()).find("SOFTREEL_WITH_ASSIMP") == std::string::npos) throw;
+    GTEST_SKIP() << "built without assimp";
+  }
+  ASSERT_EQ(mesh.colors.size(), 3U);
+  EXPECT_EQ(mesh.colors[0], Vec3f(1, 0, 0));
+  EXPECT_EQ(mesh.colors[1], Vec3f(0, 0.5f, 0)) << "linear by its specification";
+}
+
 }  // namespace
 }  // namespace softreel
