@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/pathtrace/bsdf.h"
+#include "render/pathtrace/direct_light.h"
 #include "render/pathtrace/light_set.h"
 #include "render/pathtrace/ray_scene.h"
 #include "render/pathtrace/sampler.h"
@@ -27,6 +28,7 @@ struct Picture {
   float pixel = 0;                         ///< m, edge of a pixel of the window one metre ahead of the camera
   std::optional<GroundPattern> pattern;    ///< on the last mesh
   const LightSet* lights = nullptr;
+  DirectLight direct_light = DirectLight::Weighed;
   int max_bounces = 8;
   float clamp = 0;
 };

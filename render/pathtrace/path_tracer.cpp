@@ -145,6 +145,7 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
   Picture picture;
   picture.max_bounces = params.max_bounces;
   picture.clamp = params.clamp;
+  picture.direct_light = params.direct_light;
   for (const MotionMesh& mesh : scene.meshes) picture.meshes.push_back(&mesh);
   if (scene.ground) picture.meshes.push_back(&ground);
   for (const MotionMesh* mesh : picture.meshes) {

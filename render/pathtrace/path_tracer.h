@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/base/timer.h"
 #include "render/image/image.h"
+#include "render/pathtrace/direct_light.h"
 #include "render/scene/scene.h"
 
 namespace softreel {
@@ -20,6 +21,7 @@ struct RenderParams {
   /// Surfaces seen by way of a wide scattering are at least this rough: caustics of glass and metal are blurred, where
   /// they would be fireflies. 0: off. The picture is unbiased with clamp and caustic_roughness 0.
   float caustic_roughness = 0.4f;
+  DirectLight direct_light = DirectLight::Weighed;
   bool auxiliary = false;  ///< albedo, normal and depth channels too
 };
 
