@@ -86,11 +86,13 @@ void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, con
 
 void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
                                const Vec3f& to_viewer, const LightSample& light, bool point_like) {
+  if (picture_.direct_light == DirectLight::Scattering) return;
   const Vec3f towards = frame.to_local(light.direction);
   const BsdfValue value =
       leaving_ ? bsdf.evaluate_leaving(towards) : bsdf.evaluate(frame.to_local(to_viewer), towards, point.inside);
   if (value.value.maxCoeff() <= 0) return;
-  const float weight = point_like ? 1.0f : power_heuristic(light.pdf, value.pdf);
+  const bool weighed = !point_like && picture_.direct_light == DirectLight::Weighed;
+  const float weight = weighed ? power_heuristic(light.pdf, value.pdf) : 1.0f;
   const bool through = light.direction.dot(point.shading_normal) < 0;
   Ray shadow;
   shadow.origin = through ? point.lowered : point.lifted;
@@ -118,8 +120,9 @@ void PathIntegrator::follow(const BsdfSample& next, const SurfacePoint& point, c
   ray.origin = next.direction.z() < 0 ? point.lowered : point.lifted;
   ray.direction = frame.to_world(next.direction);
   ray.max_distance = std::numeric_limits<float>::infinity();
-  origin_.pdf = next.pdf;
-  origin_.only_way = next.mirror;
+  // Density 0 gives lights that are met by scattering no weight beside their sampling.
+  origin_.pdf = picture_.direct_light == DirectLight::Lights ? 0 : next.pdf;
+  origin_.only_way = next.mirror || picture_.direct_light == DirectLight::Scattering;
   scattered_wide_ = scattered_wide_ || next.wide;
   origin_.from_camera = false;
 }
@@ -141,7 +144,7 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   seen.direction = -exit.ray.direction;
   const SurfacePoint out = surface_point(*picture_.meshes[static_cast<std::size_t>(mesh_)], exit.hit, seen);
   const ShadingFrame frame(out.shading_normal);
-  origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light};
+  origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light, time_};
   leaving_ = true;
   add_direct(bsdf, out, frame, exit.ray.direction, leaving_numbers);
   leaving_ = false;

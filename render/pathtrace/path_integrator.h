@@ -11,6 +11,7 @@
 
 #include "render/pathtrace/bsdf.h"
 #include "render/pathtrace/colored_surface.h"
+#include "render/pathtrace/direct_light.h"
 #include "render/pathtrace/light_set.h"
 #include "render/pathtrace/ray_cone.h"
 #include "render/pathtrace/ray_scene.h"
@@ -33,6 +34,7 @@ struct Picture {
   bool catches_shadows = false;          ///< the last mesh is a shadow catcher
   const LightSet* lights = nullptr;
   int samples = 1;  ///< paths a pixel
+  DirectLight direct_light = DirectLight::Weighed;
   int max_bounces = 8;
   float clamp = 0;
 };

@@ -227,6 +227,7 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
   picture.max_bounces = params.max_bounces;
   picture.clamp = params.clamp;
   picture.samples = params.samples;
+  picture.direct_light = params.direct_light;
   for (const MotionMesh& mesh : scene.meshes) picture.meshes.push_back(&mesh);
   if (scene.ground) picture.meshes.push_back(&ground);
   picture.catches_shadows = scene.ground && scene.ground->shadow_catcher;

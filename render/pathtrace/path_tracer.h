@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/base/timer.h"
 #include "render/image/image.h"
+#include "render/pathtrace/direct_light.h"
 #include "render/pathtrace/picture_channels.h"
 #include "render/scene/scene.h"
 
@@ -27,8 +28,8 @@ struct RenderParams {
   /// What of the picture is computed, in its pixels; beyond its edges (overscan) the view goes on.
   PixelWindow window;
   int samples = 16;  ///< paths a pixel, at most 2^20; with noise or time_limit, the most
-  /// Pixels stop when they are this close to their limit on a screen whose white is 1 (adaptive_sampling.h says how it
-  /// is judged); 0: all get `samples`.
+  /// Pixels stop when they are this close to their limit on a screen whose white is 1 (adaptive_sampling.h says how
+  /// it is judged); 0: all get `samples`.
   float noise = 0;
   int min_samples = 16;  ///< with noise: paths that every pixel gets; a multiple of 8, at least 16
   /// s of tracing, after which no further pass over the picture begins; 0: none. Every pixel gets its share of whole
@@ -36,9 +37,10 @@ struct RenderParams {
   double time_limit = 0;
   int max_bounces = 8;  ///< scattering events of a path
   float clamp = 0;      ///< firefly control: largest value an indirect sample may add; 0: off
-  /// Surfaces seen by way of a wide scattering are at least this rough: caustics of glass and metal are blurred, where
-  /// they would be fireflies. 0: off. The picture is unbiased with clamp and caustic_roughness 0.
+  /// Surfaces seen by way of a wide scattering are at least this rough: caustics of glass and metal are blurred,
+  /// where they would be fireflies. 0: off. The picture is unbiased with clamp and caustic_roughness 0.
   float caustic_roughness = 0.4f;
+  DirectLight direct_light = DirectLight::Weighed;
   bool auxiliary = false;  ///< albedo, normal and depth channels too
   ChannelSet channels;     ///< more channels
 

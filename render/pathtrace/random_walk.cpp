@@ -11,6 +11,8 @@ namespace {
 
 /// Scatterings: in a half-space of albedo 0.999, 1 % of the light has not left after 1000.
 constexpr int kMostSteps = 1000;
+/// From here on scattering is isotropic: at g = 0.9, 24 scatterings leave 8 % of the first direction.
+constexpr int kIsotropicStart = 24;
 /// Walks of this length may be ended by chance.
 constexpr int kRouletteStart = 16;
 /// Surfaces of one body on one flight; beyond them the mesh is taken to be broken.
@@ -30,6 +32,15 @@ Vec3f scattered(const Vec3f& direction, float g, const Vec2f& u) {
   return frame.to_world(Vec3f(sine * std::cos(angle), sine * std::sin(angle), cosine)).normalized();
 }
 
+/// The medium without anisotropy, but with the same absorption and transport length.
+ScatteringMedium isotropic(const ScatteringMedium& medium) {
+  const Vec3f kept = Vec3f::Ones() - medium.anisotropy * medium.albedo;
+  ScatteringMedium result;
+  result.extinction = medium.extinction.cwiseProduct(kept);
+  result.albedo = ((1 - medium.anisotropy) * medium.albedo).cwiseQuotient(kept);
+  return result;
+}
+
 /// One walk in the making.
 class Walk {
  public:
@@ -47,6 +58,7 @@ class Walk {
       if (left) return finish(exit);
       scattered_ = scattered_.cwiseProduct(medium_.albedo);
       if (!survives(step)) return false;
+      if (step == kIsotropicStart) medium_ = isotropic(medium_);
       ray_.direction = scattered(ray_.direction, medium_.anisotropy, Vec2f(numbers_.next(), numbers_.next()));
     }
     ray_.max_distance = std::numeric_limits<float>::infinity();
@@ -112,7 +124,7 @@ class Walk {
 
   const RayScene& rays_;
   Index mesh_;
-  const ScatteringMedium& medium_;
+  ScatteringMedium medium_;
   RandomStream& numbers_;
   Ray ray_;
   RayHit hit_;

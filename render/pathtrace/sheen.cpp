@@ -31,7 +31,7 @@ float integrated(const Sheen& sheen, float cosine) {
 }  // namespace
 
 Sheen::Sheen(float roughness) : exponent_(1 / roughness) {
-  CHECK(roughness >= kLeastRoughness);
+  CHECK(roughness >= static_cast<float>(kLeastRoughness));
   CHECK(roughness <= 1);
   // Table 1 of the paper holds L for roughness 0 and 1.
   const float t = (1 - roughness) * (1 - roughness);

@@ -20,7 +20,7 @@ class Sheen {
   float albedo(float cosine) const { return albedo_.at(cosine).x(); }
 
   /// For finer fibres the fitted shadowing falls short: at 0.06 more light returns at grazing angles than arrives.
-  static constexpr float kLeastRoughness = 0.1f;
+  static constexpr double kLeastRoughness = 0.1;
 
  private:
   /// The paper's Lambda and the curve L that it is made of.

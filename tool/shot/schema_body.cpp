@@ -15,7 +15,9 @@ constexpr std::int64_t kMostTets = 500000000;
 /// From 0.5 on the material is incompressible, which has no finite stiffness; near it the numbers degrade.
 constexpr Range kPoissonRatio{0, 0.499, false};
 /// What takes all light has no finite thickness.
-constexpr Range kTint{0, 1, true};
+constexpr Range kTint{0.001, 1, false};
+/// Within what single precision can walk through.
+constexpr Range kScattering{1e-6, 1e6, false};
 
 /// A track that moves nothing.
 Track<Transform> resting_track() {
@@ -218,9 +220,9 @@ const Table<MaterialSettings>& material_table() {
               "Of the fibres: low at the very rim only, 1 all over.");
     color("sheen_color", &A::sheen_color, kShare, "linear", "Colour of the fibres.");
     share("subsurface", &A::subsurface, "How much of what is neither metal nor glass scatters light inside the body.");
-    color("subsurface_radius", &A::subsurface_radius, kPositive, "m",
-          "How far its colours spread inside before they come out; give the body a closed surface.");
-    number_of("subsurface_scale", &A::subsurface_scale, kPositive, "", "Factor on subsurface_radius.");
+    color("subsurface_radius", &A::subsurface_radius, kScattering, "m",
+          "How far its colours spread inside: they come out 2.5 times that away on average; for a closed surface.");
+    number_of("subsurface_scale", &A::subsurface_scale, {0.001, 1000, false}, "", "Factor on subsurface_radius.");
     number_of("subsurface_anisotropy", &A::subsurface_anisotropy, {-0.95, 0.95, false}, "",
               "Which way the inside scatters: 0 all ways, above 0 forwards, which lets thin parts glow.");
     add_texture_fields(t);

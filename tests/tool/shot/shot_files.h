@@ -178,6 +178,17 @@ transmission = 0.2
 ior = 1.33
 absorption = [0.1, 2, 30]
 emission = [0, 0.01, 0.1]
+coat = 0.5
+coat_roughness = 0.2
+coat_ior = 1.6
+coat_color = [0.9, 0.5, 0.25]
+sheen = 0.3
+sheen_roughness = 0.45
+sheen_color = [1, 0.5, 0.2]
+subsurface = 0.6
+subsurface_radius = [0.03, 0.02, 0.01]
+subsurface_scale = 1.5
+subsurface_anisotropy = 0.4
 
 [material.gel]
 poisson_ratio = 0.49
