@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kTruthTolerance = 1e-6;
 /// Steps of a frame of the finest mesh, and those that correct them on a coarse one.
-constexpr int kTruthSteps = 8, kFinestSteps = 64;
+constexpr int kTruthSteps = 8, kFinestSteps = 32;
 constexpr std::int64_t kCoarseTets = 4000;
 
 /// a + factor (b - c), point by point.
