@@ -33,7 +33,7 @@ int digits_of(double step) {
   return digits;
 }
 
-/// Pixels. The panel lies in the middle of the lower edge, where pictures of bodies have their ground.
+/// Pixels. The panel lies in the upper left corner: bodies are framed in the middle, and stand on the ground.
 struct Layout {
   int bar_x = 0, bar_y = 0, bar_width = 0, bar_height = 0;
   int panel_x = 0, panel_y = 0, panel_width = 0, panel_height = 0;
@@ -46,7 +46,7 @@ Layout lay_out(const HeatLegend& legend, const DisplayImage& image) {
   l.letter = height >= kReadable ? std::max(8.0f, std::round(height / 50)) : 0.0f;
   const float unit = l.letter > 0 ? l.letter : std::max(1.0f, height / 30);
   const auto pixels = [unit](float letters) { return static_cast<int>(std::lround(letters * unit)); };
-  l.bar_width = static_cast<int>(0.4f * static_cast<float>(image.width));
+  l.bar_width = static_cast<int>(0.3f * static_cast<float>(image.width));
   if (l.letter > 0)
     l.bar_width = std::max(l.bar_width, static_cast<int>(std::ceil(text_width(legend.title, l.letter))));
   l.bar_height = pixels(1.1f);
@@ -55,8 +55,8 @@ Layout lay_out(const HeatLegend& legend, const DisplayImage& image) {
   const int side = pixels(1.8f);
   l.panel_width = l.bar_width + 2 * side;
   l.panel_height = pixels(0.8f) + title + l.bar_height + labels + pixels(0.8f);
-  l.panel_x = (image.width - l.panel_width) / 2;
-  l.panel_y = image.height - l.panel_height - pixels(1);
+  l.panel_x = pixels(1);
+  l.panel_y = pixels(1);
   l.bar_x = l.panel_x + side;
   l.bar_y = l.panel_y + pixels(0.8f) + title;
   return l;

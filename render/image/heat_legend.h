@@ -26,7 +26,7 @@ struct HeatLegend {
 /// Ticks at round numbers of the unit: 1, 2, 2.5 or 5 times a power of ten apart, 3 to 7 of them. low < high: SI units.
 HeatLegend make_heat_legend(const std::string& quantity, double low, double high, const LegendUnit& unit);
 
-/// Draws the legend in the middle of the lower edge: title, bar (heat_code) and labels, in sizes that go with the
+/// Draws the legend in the upper left corner: title, bar (heat_code) and labels, in sizes that go with the
 /// picture's. A picture too small for readable letters (less than 120 x 160 pixels) gets the bar alone.
 void draw_heat_legend(const HeatLegend& legend, DisplayImage& image);
 
