@@ -116,7 +116,8 @@ Bsdf::Bsdf(const Appearance& appearance)
   const float base = (1 - metal) * (1 - appearance.transmission);
   coat_f0_ = 0.08f * appearance.specular;
   const bool coated = coat_f0_ > 0;
-  f0_ = metal * appearance.base_color + Vec3f::Constant(base * coat_f0_);
+  const Vec3f metal_color = appearance.metal_color.value_or(appearance.base_color);
+  f0_ = metal * metal_color + Vec3f::Constant(base * coat_f0_);
   f90_ = Vec3f::Constant(metal + (coated ? base : 0.0f));
   diffuse_ = base * appearance.base_color;
   lambertian_ = !coated && metal == 0 && glass_ == 0;
@@ -130,7 +131,7 @@ Bsdf::Bsdf(const Appearance& appearance)
   if (metal > 0) {
     // Kulla and Conty: light that leaves after several reflections, coloured once more by each.
     const float once = mean.x() + mean.y();
-    const Vec3f f_mean = appearance.base_color + (Vec3f::Ones() - appearance.base_color) / 21;
+    const Vec3f f_mean = metal_color + (Vec3f::Ones() - metal_color) / 21;
     const Vec3f f_return = (f_mean.array().square() * once / (1 - f_mean.array() * (1 - once))).matrix();
     if (once < 1 - 1e-5f) metal_return_ = metal / (1 - once) * f_return;
   }

@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/base/timer.h"
 #include "render/image/image.h"
+#include "render/pathtrace/ray_scene.h"
 #include "render/scene/scene.h"
 
 namespace softreel {
@@ -48,6 +49,8 @@ struct RenderParams {
 class PathTracer {
  public:
   PathTracer(const Threads& threads, StageTimes& times);
+  /// With trees of another kind than make_ray_scene's, for measurements.
+  PathTracer(const Threads& threads, StageTimes& times, std::unique_ptr<RayScene> rays);
   ~PathTracer();
 
   /// Channels R, G, B and, if asked, albedo.R/G/B, normal.X/Y/Z, depth.Z (m along the ray; 0 where nothing was hit);
