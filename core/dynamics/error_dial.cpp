@@ -64,8 +64,8 @@ class Dial {
   }
 
  private:
-  std::optional<Motion> pilot(std::int64_t tets, int substeps, double tolerance = kPilotTolerance) {
-    std::optional<Motion> motion = run_({tets, substeps, tolerance});
+  std::optional<SampledMotion> pilot(std::int64_t tets, int substeps, double tolerance = kPilotTolerance) {
+    std::optional<SampledMotion> motion = run_({tets, substeps, tolerance});
     work_ += static_cast<double>(tets) * substeps;
     if (motion) {
       ++choice_.pilots;
@@ -74,11 +74,13 @@ class Dial {
     return motion;
   }
 
-  double distance(const Motion& a, const Motion& b) const { return motion_distance(a, b) / request_.size; }
+  double distance(const SampledMotion& a, const SampledMotion& b) const {
+    return motion_distance(a, b) / request_.size;
+  }
 
   /// The first mesh from the middle one on that can be run at all; a copy of its motion in one step a frame, or as many
   /// as are given, starts the pairs.
-  std::optional<Motion> find_middle(int substeps) {
+  std::optional<SampledMotion> find_middle(int substeps) {
     for (middle_ = std::min(kMiddleTets, request_.most_tets); middle_ <= request_.most_tets; middle_ *= kMeshRatio)
       if (auto motion = pilot(middle_, substeps)) return motion;
     return std::nullopt;
@@ -89,14 +91,14 @@ class Dial {
     const bool is_given = request_.given_substeps > 0;
     const int first = choice_.chosen.substeps;
     const double wanted = kTimeShare * request_.error;
-    std::optional<Motion> longer = find_middle(first);
+    std::optional<SampledMotion> longer = find_middle(first);
     if (!longer) return false;
     std::vector<double> differences;
     double error = 0;  // left with `steps`
     int steps = first;
     const int most = is_given ? 4 * first : request_.most_substeps;
     while (2 * steps <= most) {
-      std::optional<Motion> shorter = pilot(middle_, 2 * steps);
+      std::optional<SampledMotion> shorter = pilot(middle_, 2 * steps);
       if (!shorter) break;
       steps *= 2;
       differences.push_back(distance(*longer, *shorter));
@@ -125,7 +127,7 @@ class Dial {
     const double wanted = kMeshShare * request_.error * request_.size;
     double least = 0;  // all that the rung before could have decided
     for (std::int64_t tets = kFirstTets; tets <= request_.most_tets; tets *= kMeshRatio) {
-      std::optional<Motion> motion = pilot(tets, rung_steps());
+      std::optional<SampledMotion> motion = pilot(tets, rung_steps());
       if (!motion) continue;
       meshes_.add(static_cast<double>(tets), std::move(*motion));
       if (meshes_.count() < kFewestRungs) continue;
@@ -173,11 +175,11 @@ class Dial {
     const double growth =
         std::max(1.0, std::pow(static_cast<double>(choice_.chosen.tets) / static_cast<double>(middle_), 2.0 / 3));
     const bool is_given = request_.given_tolerance > 0;
-    const std::optional<Motion> exact = pilot(middle_, substeps, kExactTolerance);
+    const std::optional<SampledMotion> exact = pilot(middle_, substeps, kExactTolerance);
     if (!exact) return false;
     choice_.chosen.tolerance = is_given ? request_.given_tolerance : request_.loosest_tolerance;
     for (;; choice_.chosen.tolerance /= 10) {
-      const std::optional<Motion> loose = pilot(middle_, substeps, choice_.chosen.tolerance);
+      const std::optional<SampledMotion> loose = pilot(middle_, substeps, choice_.chosen.tolerance);
       if (loose) choice_.believed.algebra = growth * distance(*loose, *exact);
       const bool is_last = is_given || choice_.chosen.tolerance < 1.01 * kTightestTolerance;
       if (is_last) return loose.has_value();

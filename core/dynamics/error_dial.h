@@ -53,7 +53,7 @@ struct DialChoice {
 };
 
 /// A short run; none if it could not be made so coarse (a part too thin for the mesh, a step that cannot be solved).
-using PilotRun = std::function<std::optional<Motion>(const Discretization&)>;
+using PilotRun = std::function<std::optional<SampledMotion>(const Discretization&)>;
 
 /// Turns the dial. First steps are doubled on a coarse mesh until their error is a fifth of the wanted one; then the
 /// ladder of meshes is climbed, in at most two steps a frame, until the mesh that is wanted is measured or at most

@@ -56,7 +56,7 @@ std::vector<double> shares_of(const std::vector<double>& logs) {
 
 }  // namespace
 
-double motion_distance(const Motion& a, const Motion& b) {
+double motion_distance(const SampledMotion& a, const SampledMotion& b) {
   CHECK(a.size() == b.size());
   CHECK(!a.empty());
   double largest = 0;
@@ -70,7 +70,7 @@ double motion_distance(const Motion& a, const Motion& b) {
   return std::sqrt(largest);
 }
 
-void MeshErrors::add(double tets, Motion motion) {
+void MeshErrors::add(double tets, SampledMotion motion) {
   CHECK(tets > (tets_.empty() ? 0 : tets_.back()));
   tets_.push_back(tets);
   motions_.push_back(std::move(motion));

@@ -15,11 +15,11 @@
 namespace softreel {
 
 /// The same points of a surface at the same frames: frames x points, m.
-using Motion = std::vector<std::vector<Vec3>>;
+using SampledMotion = std::vector<std::vector<Vec3>>;
 
 /// Root of the mean squared distance over the points, in the frame where it is largest, m. The motions are of equal
 /// shape and not empty.
-double motion_distance(const Motion& a, const Motion& b);
+double motion_distance(const SampledMotion& a, const SampledMotion& b);
 
 class MeshErrors {
  public:
@@ -27,7 +27,7 @@ class MeshErrors {
   static constexpr std::size_t kFewest = 3;
 
   /// The motion on a mesh of `tets` tetrahedra, more than all before; all of equal shape.
-  void add(double tets, Motion motion);
+  void add(double tets, SampledMotion motion);
   std::size_t count() const { return tets_.size(); }
   double tets(std::size_t i) const { return tets_[i]; }
 
@@ -51,7 +51,7 @@ class MeshErrors {
   OrderFit fit_order(double order) const;
 
   std::vector<double> tets_;
-  std::vector<Motion> motions_;
+  std::vector<SampledMotion> motions_;
   std::vector<double> measured_;
   double log_slope_ = 0, order_ = 0;
 };

@@ -10,6 +10,18 @@ namespace {
 constexpr double kBlack = 0.01;
 constexpr int kReach = 2;  ///< pixels on either side that a decision takes in
 
+/// Squared error of the shadow catcher's alpha over white. The shade is a ratio r of two sums; its variance is that of
+/// the residuals shadowed - r unshadowed of the batches over the square of the sum below the line.
+double squared_alpha_error(const PixelSums& pixel, int batches) {
+  if (pixel.caught == 0 || !(pixel.unshadowed > 0)) return 0;
+  const double r = pixel.shadowed / pixel.unshadowed;
+  const auto& s = pixel.shadow_squares;
+  const double residuals = std::max(0.0, s[0] - 2 * r * s[1] + r * r * s[2]);
+  const double variance = residuals * batches / (batches - 1) / (pixel.unshadowed * pixel.unshadowed);
+  const double share = static_cast<double>(pixel.caught) / pixel.samples;
+  return share * share * variance / (4 * std::max(1 - pixel.alpha(), kBlack));
+}
+
 }  // namespace
 
 double squared_screen_error(const PixelSums& pixel) {
@@ -23,7 +35,7 @@ double squared_screen_error(const PixelSums& pixel) {
     const double variance_of_mean = spread * batches / (n * n);
     sum += variance_of_mean / (4 * std::max(total / n, kBlack));
   }
-  return sum / 3;
+  return sum / 3 + squared_alpha_error(pixel, batches);
 }
 
 std::vector<std::uint8_t> noisy_pixels(const std::vector<PixelSums>& pixels, int width, int height, double noise) {

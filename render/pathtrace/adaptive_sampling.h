@@ -15,7 +15,8 @@
 
 namespace softreel {
 
-/// Squared error of a pixel on a screen whose white is 1; of whole batches, at least two. 0 before that.
+/// Squared error of a pixel on a screen whose white is 1, with that of a shadow on it; of whole batches, at least two.
+/// 0 before that.
 double squared_screen_error(const PixelSums& pixel);
 
 /// Per pixel, 1 where the error around it is above `noise`. pixels: height x width.

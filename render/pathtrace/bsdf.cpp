@@ -53,7 +53,7 @@ Bsdf::Bsdf(const Appearance& appearance, const AlbedoTables& tables)
   const float metal = appearance.metallic;
   const float base = (1 - metal) * (1 - appearance.transmission);
   const bool coated = dielectric_f0_ > 0;
-  f0_ = metal * appearance.base_color + Vec3f::Constant(base * dielectric_f0_);
+  f0_ = metal * appearance.metal_color.value_or(appearance.base_color) + Vec3f::Constant(base * dielectric_f0_);
   f90_ = Vec3f::Constant(metal + (coated ? base : 0.0f));
   subsurface_ = base * appearance.subsurface;
   diffuse_from_behind_ = base * appearance.base_color;
@@ -70,7 +70,8 @@ void Bsdf::prepare_metal(const Appearance& appearance) {
   const float lost = mean_passed() - ggx_albedo_.mean().sum();
   if (lost <= 1e-5f) return;
   const float once = ggx_albedo_.mean().sum() / mean_passed();
-  const Vec3f f_mean = appearance.base_color + (Vec3f::Ones() - appearance.base_color) / 21;
+  const Vec3f metal_color = appearance.metal_color.value_or(appearance.base_color);
+  const Vec3f f_mean = metal_color + (Vec3f::Ones() - metal_color) / 21;
   const Vec3f f_return = (f_mean.array().square() * once / (1 - f_mean.array() * (1 - once))).matrix();
   metal_return_ = appearance.metallic / lost * f_return;
 }

@@ -123,20 +123,16 @@ class Frame {
   void add_samples(int x, int y, int up_to, PixelSums& sums, PixelChannels* gathered) const {
     const int at_x = window_.left + x, at_y = window_.top + y;
     const Sampler sampler(hash_, at_x, at_y);
-    std::array<double, 3> before{};
+    PixelSums before;
     while (sums.samples < up_to) {
       const auto s = static_cast<std::uint32_t>(sums.samples);
-      if (s % kBatch == 0) before = sums.values;
+      if (s % kBatch == 0) before = sums;
       PathIntegrator path(picture_, sampler, s);
       const Ray ray = rays_.ray(at_x, at_y, sampler.numbers(s, 0));
       const Vec3f radiance = path.trace(ray);
       sums.add(radiance, path.first_hit());
       if (gathered != nullptr) gathered->add(ray, path.first_hit());
-      if (sums.samples % kBatch != 0) continue;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const double batch = sums.values[c] - before[c];
-        sums.batch_squares[c] += batch * batch;
-      }
+      if (sums.samples % kBatch == 0) sums.close_batch(before);
     }
   }
 
@@ -251,14 +247,17 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
 }  // namespace
 
 struct PathTracer::Parts {
-  Parts(const Threads& run_on, StageTimes& stages)
-      : threads(run_on), times(stages), rays(make_ray_scene(run_on.count())) {}
+  Parts(const Threads& run_on, StageTimes& stages, std::unique_ptr<RayScene> trees)
+      : threads(run_on), times(stages), rays(std::move(trees)) {}
   const Threads& threads;
   StageTimes& times;
   std::unique_ptr<RayScene> rays;
 };
 
-PathTracer::PathTracer(const Threads& threads, StageTimes& times) : parts_(std::make_unique<Parts>(threads, times)) {}
+PathTracer::PathTracer(const Threads& threads, StageTimes& times)
+    : PathTracer(threads, times, make_ray_scene(threads.count())) {}
+PathTracer::PathTracer(const Threads& threads, StageTimes& times, std::unique_ptr<RayScene> rays)
+    : parts_(std::make_unique<Parts>(threads, times, std::move(rays))) {}
 PathTracer::~PathTracer() = default;
 
 ChannelSet RenderParams::all_channels() const {

@@ -10,6 +10,7 @@
 #include "render/image/image.h"
 #include "render/pathtrace/direct_light.h"
 #include "render/pathtrace/picture_channels.h"
+#include "render/pathtrace/ray_scene.h"
 #include "render/scene/scene.h"
 
 namespace softreel {
@@ -57,6 +58,8 @@ struct RenderParams {
 class PathTracer {
  public:
   PathTracer(const Threads& threads, StageTimes& times);
+  /// With trees of another kind than make_ray_scene's, for measurements.
+  PathTracer(const Threads& threads, StageTimes& times, std::unique_ptr<RayScene> rays);
   ~PathTracer();
 
   /// Channels R, G, B; with a shadow catcher A (then colours are premultiplied); then those of params.all_channels()

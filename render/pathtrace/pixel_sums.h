@@ -16,9 +16,12 @@ inline constexpr int kBatch = 8;
 struct PixelSums {
   std::array<double, 3> values{};         ///< radiance
   std::array<double, 3> batch_squares{};  ///< of the radiance of each whole batch
-  double coverage = 0;                    ///< samples that hit something to be seen (see ShadowCatcher)
-  double unshadowed = 0, shadowed = 0;    ///< light on the shadow catcher without and with the bodies in its way
-  int caught = 0;                         ///< samples that hit the shadow catcher
+  /// Of each whole batch's light on the shadow catcher: shadowed squared, shadowed times unshadowed, unshadowed
+  /// squared.
+  std::array<double, 3> shadow_squares{};
+  double coverage = 0;                  ///< samples that hit something to be seen (see ShadowCatcher)
+  double unshadowed = 0, shadowed = 0;  ///< light on the shadow catcher without and with the bodies in its way
+  int caught = 0;                       ///< samples that hit the shadow catcher
   int samples = 0;
 
   void add(const Vec3f& radiance, const FirstHit& hit) {
@@ -28,6 +31,18 @@ struct PixelSums {
     shadowed += static_cast<double>(hit.shadowed);
     if (hit.caught) ++caught;
     ++samples;
+  }
+
+  /// Ends a whole batch, which began when the sums were `before`.
+  void close_batch(const PixelSums& before) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double batch = values[c] - before.values[c];
+      batch_squares[c] += batch * batch;
+    }
+    const double with = shadowed - before.shadowed, without = unshadowed - before.unshadowed;
+    shadow_squares[0] += with * with;
+    shadow_squares[1] += with * without;
+    shadow_squares[2] += without * without;
   }
 
   /// Share of what is behind the pixel that it hides: bodies all of it, the shadow catcher what its shadow takes away.

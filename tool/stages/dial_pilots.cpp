@@ -56,7 +56,7 @@ DialPilots::DialPilots(const Shot& shot, const BodySettings& body, const LoadedB
   for (std::size_t v = 0; v < vertices; v += stride) points_.push_back(v);
 }
 
-std::optional<Motion> DialPilots::run(const Discretization& cut) {
+std::optional<SampledMotion> DialPilots::run(const Discretization& cut) {
   quiet_.stop_if_cancelled();
   try {
     return run_on(fill(cut.tets), cut);
@@ -67,7 +67,7 @@ std::optional<Motion> DialPilots::run(const Discretization& cut) {
   }
 }
 
-Motion DialPilots::run_on(const FilledBody& filled, const Discretization& cut) const {
+SampledMotion DialPilots::run_on(const FilledBody& filled, const Discretization& cut) const {
   Shot shot = shot_;
   shot.solver.substeps = cut.substeps;
   tolerance_of(shot) = cut.tolerance;
@@ -91,11 +91,11 @@ std::vector<Vec3> DialPilots::points_of(const Simulator& simulator, const Filled
   return some;
 }
 
-Motion DialPilots::move(Simulator& simulator, const FilledBody& filled) const {
+SampledMotion DialPilots::move(Simulator& simulator, const FilledBody& filled) const {
   simulator.set_state(rest_of(filled.mesh));
   const int start = first_simulated_frame(shot_);
   if (shot_.settings.start == StartState::Equilibrium) require(simulator.find_equilibrium(start).ok(), start);
-  Motion motion;
+  SampledMotion motion;
   for (int frame = start; frame <= shot_.settings.last_frame; ++frame) {
     if (frame > start) {
       const FrameReport report = advance_to_frame(
@@ -108,7 +108,7 @@ Motion DialPilots::move(Simulator& simulator, const FilledBody& filled) const {
 }
 
 /// A few frames in order; all of them as stations on the way where the few are too far apart.
-Motion DialPilots::balance(Simulator& simulator, const FilledBody& filled) const {
+SampledMotion DialPilots::balance(Simulator& simulator, const FilledBody& filled) const {
   const int count = shot_.settings.last_frame - shot_.settings.first_frame + 1;
   const int stride = (count + kMostStaticFrames - 1) / kMostStaticFrames;
   if (auto motion = balance_every(stride, stride, simulator, filled)) return *motion;
@@ -116,10 +116,10 @@ Motion DialPilots::balance(Simulator& simulator, const FilledBody& filled) const
   throw work_error("an equilibrium could not be found");
 }
 
-std::optional<Motion> DialPilots::balance_every(int station, int stride, Simulator& simulator,
-                                                const FilledBody& filled) const {
+std::optional<SampledMotion> DialPilots::balance_every(int station, int stride, Simulator& simulator,
+                                                       const FilledBody& filled) const {
   simulator.set_state(rest_of(filled.mesh));
-  Motion motion;
+  SampledMotion motion;
   // From the last frame backwards, so that the end of the motion is among the frames.
   const int count = shot_.settings.last_frame - shot_.settings.first_frame;
   for (int i = count % stride; i <= count; i += station) {

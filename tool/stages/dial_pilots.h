@@ -29,10 +29,10 @@ class DialPilots {
 
   /// At most 2000 vertices of the surface, evenly taken, at all frames of a dynamic shot and at most 8 of a static one.
   /// None if the body cannot be filled so coarsely or a frame cannot be solved: problem() says why.
-  std::optional<Motion> run(const Discretization& cut);
+  std::optional<SampledMotion> run(const Discretization& cut);
 
   /// The same on tetrahedra made elsewhere; cut.tets is not looked at. Throws Error if a frame cannot be solved.
-  Motion run_on(const FilledBody& filled, const Discretization& cut) const;
+  SampledMotion run_on(const FilledBody& filled, const Discretization& cut) const;
 
   /// Why the last run that failed did.
   const std::string& problem() const { return problem_; }
@@ -40,9 +40,10 @@ class DialPilots {
  private:
   const FilledBody& fill(std::int64_t tets);
   std::vector<Vec3> points_of(const Simulator& simulator, const FilledBody& filled) const;
-  Motion move(Simulator& simulator, const FilledBody& filled) const;
-  Motion balance(Simulator& simulator, const FilledBody& filled) const;
-  std::optional<Motion> balance_every(int station, int stride, Simulator& simulator, const FilledBody& filled) const;
+  SampledMotion move(Simulator& simulator, const FilledBody& filled) const;
+  SampledMotion balance(Simulator& simulator, const FilledBody& filled) const;
+  std::optional<SampledMotion> balance_every(int station, int stride, Simulator& simulator,
+                                             const FilledBody& filled) const;
 
   const Shot& shot_;
   const BodySettings& body_;

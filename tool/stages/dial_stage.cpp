@@ -100,7 +100,8 @@ StageKey dial_key(const Shot& shot, const BodySettings& body, const LoadedBody& 
   Shot looked_at = shot;
   looked_at.solver.substeps = kLooksPerFrame;
   return KeyHasher(kDialVersion)
-      .add(simulation_keys(looked_at, constraints, filled_key(body, loaded), materials.key()))
+      .add(simulation_keys(looked_at, solver_of(looked_at, body), constraints, filled_key(body, loaded),
+                           materials.key()))
       .add(shot.settings.first_frame)
       .add(shot.dial.error)
       .add(shot.dial.max_tets)

@@ -22,7 +22,7 @@ constexpr int kTruthSteps = 8, kFinestSteps = 32;
 constexpr std::int64_t kCoarseTets = 4000;
 
 /// a + factor (b - c), point by point.
-Motion moved_on(Motion a, const Motion& b, const Motion& c, double factor) {
+SampledMotion moved_on(SampledMotion a, const SampledMotion& b, const SampledMotion& c, double factor) {
   for (std::size_t f = 0; f < a.size(); ++f)
     for (std::size_t i = 0; i < a[f].size(); ++i) a[f][i] += factor * (b[f][i] - c[f][i]);
   return a;
@@ -47,13 +47,13 @@ class OneBody {
     return dial_request(asked, asked.bodies.front(), loaded_, context_);
   }
 
-  std::optional<Motion> try_run(const Discretization& cut) { return pilots_.run(cut); }
+  std::optional<SampledMotion> try_run(const Discretization& cut) { return pilots_.run(cut); }
 
-  Motion run_plane_bar(int across, int substeps) const {
+  SampledMotion run_plane_bar(int across, int substeps) const {
     return pilots_.run_on(fill_to_planes(loaded_.surface, constraints_, across), {0, substeps, kTruthTolerance});
   }
 
-  Motion run(const Discretization& cut) {
+  SampledMotion run(const Discretization& cut) {
     if (auto motion = pilots_.run(cut)) return std::move(*motion);
     throw std::runtime_error(
         fmt::format("{} tetrahedra, {} steps a frame: {}", cut.tets, cut.substeps, pilots_.problem()));
@@ -73,18 +73,18 @@ class OneBody {
 };
 
 struct Truth {
-  Motion motion;
+  SampledMotion motion;
   double doubt = 0;
 };
 
 Truth find_truth(OneBody& body, const DialProblem& problem) {
   const int steps = body.is_dynamic() ? kTruthSteps : 1;
   const bool is_bar = problem.across > 0;
-  const Motion fine =
+  const SampledMotion fine =
       is_bar ? body.run_plane_bar(problem.across, steps) : body.run({problem.fine_tets, steps, kTruthTolerance});
-  const Motion coarse = is_bar ? body.run_plane_bar(problem.across / 2, steps)
-                               : body.run({problem.fine_tets / 8, steps, kTruthTolerance});
-  Motion motion = moved_on(fine, fine, coarse, is_bar ? 1.0 / 3 : 1);
+  const SampledMotion coarse = is_bar ? body.run_plane_bar(problem.across / 2, steps)
+                                      : body.run({problem.fine_tets / 8, steps, kTruthTolerance});
+  SampledMotion motion = moved_on(fine, fine, coarse, is_bar ? 1.0 / 3 : 1);
   const double doubt = motion_distance(motion, fine) / body.size();
   if (body.is_dynamic())
     motion = moved_on(std::move(motion), body.run({kCoarseTets, kFinestSteps, kTruthTolerance}),
@@ -112,7 +112,7 @@ DialStudy study_dial(const DialProblem& problem) {
     if (!choice) throw std::runtime_error(problem.name + ": no pilots could be run");
     turn.choice = *choice;
     start = thread_seconds();
-    const Motion motion = body.run(choice->chosen);
+    const SampledMotion motion = body.run(choice->chosen);
     turn.seconds = thread_seconds() - start;
     turn.truth = motion_distance(motion, truth.motion) / body.size();
     study.turns.push_back(std::move(turn));

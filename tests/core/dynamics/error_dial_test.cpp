@@ -18,8 +18,8 @@ struct KnownErrors {
   double time_error(int substeps) const { return time * std::pow(substeps, -step_order); }
 
   PilotRun pilots() const {
-    return [*this](const Discretization& cut) -> std::optional<Motion> {
-      return Motion{{Vec3(mesh_error(cut.tets), time_error(cut.substeps), algebra * cut.tolerance)}};
+    return [*this](const Discretization& cut) -> std::optional<SampledMotion> {
+      return SampledMotion{{Vec3(mesh_error(cut.tets), time_error(cut.substeps), algebra * cut.tolerance)}};
     };
   }
 };
@@ -40,10 +40,10 @@ TEST(ErrorDial, BelievesWhatIsTrueWhereErrorsFollowPowers) {
 
 /// Errors of the first order that scatter by a fifth, as pins that hold whole tetrahedra make them.
 PilotRun scattered(unsigned seed) {
-  return [seed](const Discretization& cut) -> std::optional<Motion> {
+  return [seed](const Discretization& cut) -> std::optional<SampledMotion> {
     std::mt19937 random(seed + static_cast<unsigned>(cut.tets));
     const double scatter = std::uniform_real_distribution<>(0.8, 1.2)(random);
-    return Motion{
+    return SampledMotion{
         {Vec3(KnownErrors{.mesh_order = 1}.mesh_error(cut.tets) * scatter, KnownErrors{}.time_error(cut.substeps), 0)}};
   };
 }
@@ -112,7 +112,7 @@ TEST(ErrorDial, KeepsWhatIsGivenAndJudgesIt) {
 }
 
 TEST(ErrorDial, NothingIsChosenWhereNoPilotRuns) {
-  EXPECT_FALSE(turn_dial({.error = 0.01}, [](const Discretization&) { return std::optional<Motion>(); }));
+  EXPECT_FALSE(turn_dial({.error = 0.01}, [](const Discretization&) { return std::optional<SampledMotion>(); }));
 }
 
 }  // namespace

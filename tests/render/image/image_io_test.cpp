@@ -53,6 +53,28 @@ TEST(Png, ReadsBackWhatItWrote) {
   EXPECT_EQ(back.pixels, image.pixels);
 }
 
+TEST(Png, OfTransparentPixelsShowsThemOverBlackWhenReadBack) {
+  DisplayImage image{2, 1, {200, 100, 50, 200, 100, 50}};
+  image.alpha = {255, 0};
+  const DisplayImage back = read_png(written("softreel_alpha.png", encode_png(image)));
+  EXPECT_EQ(back.pixels, (std::vector<std::uint8_t>{200, 100, 50, 0, 0, 0}));
+}
+
+TEST(Exr, KeepsWhereACropOrAnOverscanLiesInThePicture) {
+  Image image = some_channels();
+  image.left = -2;
+  image.top = 5;
+  image.full_width = 20;
+  image.full_height = 10;
+  const Image back = read_exr(written("softreel_window.exr", encode_exr(image)));
+  EXPECT_EQ(back.width, 4);
+  EXPECT_EQ(back.left, -2);
+  EXPECT_EQ(back.top, 5);
+  EXPECT_EQ(back.full_width, 20);
+  EXPECT_EQ(back.full_height, 10);
+  EXPECT_EQ(back.find("R")->pixels, image.channels[0].pixels);
+}
+
 TEST(Exr, ReadsBackEveryChannelBitForBit) {
   Image image = some_channels();
   image.attributes["cryptomatte/1234567/conversion"] = "uint32_to_float32";

@@ -78,6 +78,24 @@ TEST(AdaptiveSampling, EstimatesTheErrorOnTheSafeSideAndNotByMuch) {
   EXPECT_LT(static_cast<double>(high), 3 * truth);
 }
 
+TEST(AdaptiveSampling, SeesTheNoiseOfShadowsInTheAlpha) {
+  Scene scene = mixed_scene();
+  scene.meshes.erase(scene.meshes.begin());
+  scene.ground.emplace();
+  scene.ground->shadow_catcher = true;
+  const Image converged = rendered(scene, small_params(24, 2048));
+  RenderParams params = small_params(24, 1024);
+  params.noise = 0.01f;
+  const Image adaptive = rendered(scene, params);
+  double sum = 0;
+  const std::vector<float>&a = adaptive.find("A")->pixels, &b = converged.find("A")->pixels;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    sum += std::pow(std::sqrt(1 - static_cast<double>(a[k])) - std::sqrt(1 - static_cast<double>(b[k])), 2);
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(a.size())), 0.012);
+  EXPECT_GT(mean_samples(adaptive), 20) << "more than the least";
+  EXPECT_LT(mean_samples(adaptive), 900);
+}
+
 TEST(AdaptiveSampling, GivesTheSameBitsWithOneAndFourThreads) {
   RenderParams params = small_params(48, 64);
   params.noise = 0.01f;

@@ -160,10 +160,10 @@ TEST_F(Skipping, AKeyOfALookTracesTheFramesWhoseValuesItChanges) {
   EXPECT_EQ(longer.traced, 1);
   EXPECT_EQ(longer.kept, 3);
   const Work material =
-      run_shot(before + "--set 'material.soft.base_color=[{frame=2,value=[0.8,0.8,0.8]},{frame=4,value=[1,0,0]}]'");
+      run_shot(before + "--set 'material.soft.base_color=[{frame=2,value=[0.7,0.6,0.5]},{frame=4,value=[1,0,0]}]'");
   EXPECT_EQ(material.computed, 0);
   const Work later =
-      run_shot(before + "--set 'material.soft.base_color=[{frame=3,value=[0.8,0.8,0.8]},{frame=4,value=[1,0,0]}]'");
+      run_shot(before + "--set 'material.soft.base_color=[{frame=3,value=[0.7,0.6,0.5]},{frame=4,value=[1,0,0]}]'");
   EXPECT_EQ(later.traced, 1) << "frames 1, 2 and 4 have the colours that they had";
   EXPECT_EQ(later.kept, 3);
 }
