@@ -16,6 +16,10 @@ class RecordingScene : public RayScene {
 
   void build(const std::vector<const MotionMesh*>& meshes) override { rays_->build(meshes); }
   bool intersect(const Ray& ray, RayHit& hit, bool coherent) const override;
+  /// Of walks inside bodies, which the standard picture has not: passed on, not recorded.
+  bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const override {
+    return rays_->intersect_body(mesh, ray, hit, front);
+  }
   bool occluded(const Ray& ray, bool coherent) const override;
 
   std::size_t count() const { return recorded_.size(); }

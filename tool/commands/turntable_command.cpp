@@ -74,13 +74,14 @@ int run_turntable(const ShotOptions& options, int count) {
   SceneStage scenes(run);
   Scene scene = scenes.at(frame, run.skin(frame, still_request(run.shot().render)));
   scene.next_camera.reset();  // nothing moves
+  scene.camera_motion.clear();
   const Camera start = scene.camera;
   Turntable turntable(session, outputs);
   int traced = 0;
   session.console().begin("pictures", count);
   for (int picture = 1; picture <= count; ++picture) {
     scene.camera = turned(start, static_cast<double>(picture - 1) / count);
-    traced += turntable.make(picture, count, scene, scenes.content_key(scene)) ? 1 : 0;
+    traced += turntable.make(picture, count, scene, scenes.content_key(frame, scene)) ? 1 : 0;
     session.console().advance(picture, fmt::format("picture {}", picture));
   }
   RunReport report = session.report("turntable", run);

@@ -72,8 +72,8 @@ SampledMotion DialPilots::run_on(const FilledBody& filled, const Discretization&
   shot.solver.substeps = cut.substeps;
   tolerance_of(shot) = cut.tolerance;
   StageTimes times;
-  Simulator simulator(make_body_model(shot, body_, loaded_, filled, constraints_), shot.solver, quiet_.threads,
-                      quiet_.log, times);
+  Simulator simulator(make_body_model(shot, body_, loaded_, filled, constraints_), solver_of(shot, body_),
+                      quiet_.threads, quiet_.log, times);
   return is_static(shot) ? balance(simulator, filled) : move(simulator, filled);
 }
 

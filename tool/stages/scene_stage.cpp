@@ -309,9 +309,10 @@ StageKey SceneStage::preview_key(int frame) const {
 
 StageKey SceneStage::content_key(int frame, const Scene& scene) const {
   KeyHasher key("picture 3");
-  const Look look = this->look(frame);
+  Look look = this->look(frame);
+  look.camera = scene.camera;  // a turntable's is its own
   add_look(key, look);
-  add_tracing(key, look.camera_motion);
+  add_tracing(key, scene.camera_motion);
   if (scene.next_camera) add(key, *scene.next_camera);
   if (shows_heat()) {
     const HeatRange range = heat_range();
