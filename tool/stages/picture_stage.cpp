@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <fmt/format.h>
-
 #include "core/base/check.h"
 #include "render/image/half_picture.h"
 #include "render/image/image_io.h"
