@@ -3,7 +3,7 @@
 
     check_readme.py PROGRAM
 
-Works in a temporary folder that sees assets/ and presets/. The bare ./tool/run and ./tool/test are what runs this test.
+Works in a temporary folder that sees assets/, presets/ and tests/. The bare ./tool/run and ./tool/test are what runs this test.
 """
 import os
 import re
@@ -28,7 +28,7 @@ def main():
     program = os.path.abspath(sys.argv[1])
     count = failed = 0
     with tempfile.TemporaryDirectory() as folder:
-        for name in ("assets", "presets"):
+        for name in ("assets", "presets", "tests"):
             os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
         for arguments in commands():
             count += 1

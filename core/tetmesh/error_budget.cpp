@@ -51,7 +51,7 @@ constexpr double kErrorOverCount = 0.75;
 
 /// So many errors are tried for a count. A filling that has it ends where no gap is wider than so many errors: what
 /// comes after mends single places, and may add and spoil others.
-constexpr int kCountSteps = 10;
+constexpr int kCountSteps = 14;
 constexpr double kNearlyKept = 1.3;
 
 /// How near to the wanted number is near enough.

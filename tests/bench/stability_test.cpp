@@ -55,7 +55,7 @@ TEST(Stability, ABarStretchedTwentyTimesRestsWithTheCapAndFluttersWithout) {
   EXPECT_TRUE(verdict.survived()) << verdict.failure;
   params.dilatation = Dilatation::Linear;
   // Across a stretch of 1 + 1 / nu = 4.33 a linear bar is without thickness.
-  const std::vector<HeldPose> linear = stretch_bar(bar, params, {2, 4, 5}, {}, verdict);
+  const std::vector<HeldPose> linear = stretch_bar(bar, params, {2, 3, 5}, {}, verdict);
   ASSERT_EQ(linear.size(), 3U) << verdict.failure;
   EXPECT_LT(linear[1].flutter, kFlutter);
   EXPECT_GT(linear[2].flutter, 10);

@@ -221,8 +221,8 @@ const Table<RenderSettings>& render_table() {
         .add(
             "channels", [](auto& r) -> auto& { return r.params.channels; }, channels_codec(), "",
             "What the EXR holds beside the colour; with \"motion\" each frame asks for the next one.", "none");
-    add_heat_fields(t);
     t.check = check_render;
+    add_heat_fields(t);
     return t;
   }();
   return table;

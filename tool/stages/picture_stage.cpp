@@ -145,7 +145,7 @@ Image PictureStage::trace(const Scene& scene) {
   if (!tracer_) tracer_ = std::make_unique<PathTracer>(context_.threads, context_.times);
   const ScopedStage stage(context_.times, "render");
   Image image = tracer_->render(scene, shot_.render.params, [this] { return context_.cancelled.load(); });
-  if (const Channel* samples = image.find("samples")) {
+  if (const Channel* samples = image.find("samples.N")) {
     const auto [least, most] = std::minmax_element(samples->pixels.begin(), samples->pixels.end());
     const double mean = std::accumulate(samples->pixels.begin(), samples->pixels.end(), 0.0) /
                         static_cast<double>(samples->pixels.size());

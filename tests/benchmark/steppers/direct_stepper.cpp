@@ -1,13 +1,16 @@
 // softreel's implicit Euler step (core/dynamics/step.cpp) with the linear system solved by other people's libraries.
 //
-// (M + h Ma + sum h (h + b) K_e) d = h f - (h Ma + h (h + b) K) v', d the change of velocity from v', which is the
-// velocity at the start or, of held nodes, that of their way. They are taken out of the system.
+// (M + h Ma + sum h (h + b) K_e + h^2 G) d = h f - (h Ma + h (h + b) K + h^2 G) v', d the change of velocity from v',
+// which is the velocity at the start or, of held nodes, that of their way; G: core/elasticity/tension.h. Held nodes are
+// taken out of the system.
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "core/elasticity/assembly.h"
 #include "core/elasticity/step_terms.h"
+#include "core/elasticity/tension.h"
+#include "core/elasticity/thickness.h"
 #include "tests/benchmark/rivals/rival.h"
 #include "tests/benchmark/steppers/rival_body.h"
 #include "tests/benchmark/steppers/stepper.h"
@@ -17,6 +20,9 @@ namespace {
 
 using rivals::Rival;
 using rivals::ScalarSystem;
+
+/// Of the harmless tension that softreel leaves out of an Euler step's matrix (core/dynamics/step.cpp).
+constexpr double kExplicitShare = 0.5;
 
 const char* name_of(DirectSolver solver) {
   switch (solver) {
@@ -42,6 +48,13 @@ std::unique_ptr<Rival> make_solver(DirectSolver solver, const ScalarSystem& syst
   return rivals::make_eigen_cg_ic(system);
 }
 
+AlignedVector<double> tension_limits(const RivalBody& rival, const BlockPattern& pattern) {
+  std::vector<double> moduli;
+  for (const ElementMaterial& material : rival.model.materials) moduli.push_back(material.youngs_modulus);
+  return find_tension_limits(rival.body, find_thickness(rival.model.mesh, pattern, moduli), rival.model.materials,
+                             kExplicitShare);
+}
+
 class DirectStepper : public Stepper {
  public:
   DirectStepper(BodyModel model, const SolverParams& params, DirectSolver solver)
@@ -49,7 +62,8 @@ class DirectStepper : public Stepper {
         solver_kind_(solver),
         rival_(std::move(model), params.dilatation),
         system_{{stiffness_pattern(rival_.model.mesh.tets, static_cast<Index>(rival_.nodes())), {}}, {}, {}},
-        assembler_(rival_.model.mesh.tets, system_.matrix.pattern) {
+        assembler_(rival_.model.mesh.tets, system_.matrix.pattern),
+        tension_limits_(tension_limits(rival_, system_.matrix.pattern)) {
     if (params.integrator != Integrator::Euler || linearization(params) != Linearize::Start)
       throw std::runtime_error("make_direct: only implicit Euler with one linearisation at the step's start");
   }
@@ -75,12 +89,17 @@ class DirectStepper : public Stepper {
   std::span<const Vec3> velocities() const override { return rival_.velocities; }
 
  private:
+  StepSource source(std::span<const Vec3> base, double h) const {
+    return {rival_.positions, base, rival_.rotations, {h, h}, rival_.damping_stiffness, {}, -1, tension_limits_};
+  }
+
   void assemble(const StepConstraints& constraints, double h) {
     std::vector<double> shares(rival_.body.tets.size()), node_terms(rival_.nodes());
     for (std::size_t e = 0; e < shares.size(); ++e) shares[e] = h * (h + rival_.damping_stiffness[e]);
     for (std::size_t i = 0; i < node_terms.size(); ++i) node_terms[i] = rival_.damped_mass(i, h);
     find_stiffness_terms(rival_.body, rival_.positions, rival_.rotations, shares, Curvature::None, terms_, {},
                          rival_.threads);
+    terms_.curvatures = find_tension_curvatures(rival_.body, source({}, h), rival_.threads);
     assembler_.assemble(terms_, node_terms, system_.matrix, rival_.threads);
     for (const ActivePull& pull : constraints.pulls) add_pull_stiffness(pull, rival_.positions, h * h, system_.matrix);
   }
@@ -88,8 +107,7 @@ class DirectStepper : public Stepper {
   /// Forces at the start, and what damping, stiffness and pulls take from `base`.
   void find_right_side(const StepConstraints& constraints, const std::vector<Vec3>& base, double h) {
     system_.load.resize(rival_.nodes());
-    find_step_terms(rival_.body, {rival_.positions, base, rival_.rotations, {h, h}, rival_.damping_stiffness, {}, -1},
-                    step_terms_, rival_.threads);
+    find_step_terms(rival_.body, source(base, h), step_terms_, rival_.threads);
     gather_step_forces(rival_.body, step_terms_, system_.load, rival_.threads);
     for (std::size_t i = 0; i < rival_.nodes(); ++i)
       system_.load[i] += h * (rival_.masses.mass[i] * rival_.model.gravity - rival_.masses.damping[i] * base[i]);
@@ -133,6 +151,7 @@ class DirectStepper : public Stepper {
   RivalBody rival_;
   benchmark_support::LinearSystem system_;
   StiffnessAssembler assembler_;
+  AlignedVector<double> tension_limits_;
   StiffnessTerms terms_;
   StepTerms step_terms_;
   ScalarSystem scalar_;

@@ -40,7 +40,7 @@ double screen_difference(const Image& a, const Image& b) {
 }
 
 double mean_samples(const Image& image) {
-  return mean_of(*image.find("samples"));
+  return mean_of(*image.find("samples.N"));
 }
 
 TEST(AdaptiveSampling, MeetsItsTargetAndTakesFewerSamplesThanTheWholePictureWouldNeed) {
@@ -52,7 +52,7 @@ TEST(AdaptiveSampling, MeetsItsTargetAndTakesFewerSamplesThanTheWholePictureWoul
     const double error = screen_difference(adaptive, converged);
     EXPECT_LT(error, static_cast<double>(noise));
     EXPECT_GT(error, 0.2 * static_cast<double>(noise)) << "more than was asked for";
-    const Channel& samples = *adaptive.find("samples");
+    const Channel& samples = *adaptive.find("samples.N");
     const auto [least, most] = std::minmax_element(samples.pixels.begin(), samples.pixels.end());
     EXPECT_EQ(*least, 16) << "sky";
     // As many samples everywhere as the noisiest pixel got is what the same promise costs without adaptivity.
@@ -108,7 +108,7 @@ TEST(AdaptiveSampling, PixelsHaveTheBitsOfThatManySamples) {
   RenderParams params = small_params(24, 40);
   params.noise = 0.01f;
   const Image passes = rendered(mixed_scene(), params);
-  const std::vector<float>& samples = passes.find("samples")->pixels;
+  const std::vector<float>& samples = passes.find("samples.N")->pixels;
   std::map<float, int> pixels_of;
   for (const float count : samples) ++pixels_of[count];
   ASSERT_GE(pixels_of.size(), 2u);
@@ -126,7 +126,7 @@ TEST(TimeLimit, EndsAfterAWholePassWithTheBitsOfThatManySamples) {
   RenderParams params = small_params(48, 1 << 20);
   params.time_limit = 0.05;
   const Image limited = rendered(mixed_scene(), params);
-  const Channel& samples = *limited.find("samples");
+  const Channel& samples = *limited.find("samples.N");
   const float count = samples.pixels.front();
   EXPECT_GE(count, 1);
   EXPECT_LT(count, 1 << 20);
