@@ -15,6 +15,9 @@ namespace {
 /// a given sum where the first is four times the second. Tolerance is cheap.
 constexpr double kMeshShare = 0.75, kTimeShare = 0.2, kAlgebraShare = 0.05;
 
+/// So many meshes that cannot be run: the shot is at fault, not the meshes.
+constexpr int kMostFailures = 4;
+
 /// The coarsest mesh, and the choice: below, the surface is hardly carried and errors follow no power.
 constexpr std::int64_t kFirstTets = 1500;
 constexpr std::int64_t kMeshRatio = 2;
@@ -78,18 +81,26 @@ class Dial {
     return motion_distance(a, b) / request_.size;
   }
 
-  /// The first mesh from the middle one on that can be run at all; a copy of its motion in one step a frame, or as many
-  /// as are given, starts the pairs.
-  std::optional<SampledMotion> find_middle(int substeps) {
-    for (middle_ = std::min(kMiddleTets, request_.most_tets); middle_ <= request_.most_tets; middle_ *= kMeshRatio)
+  /// The first mesh from the middle one on that can be run at all, in `substeps` steps a frame or, unless they are
+  /// given, in twice as many; its motion starts the pairs. A step may be too long, or a part too thin for the mesh.
+  std::optional<SampledMotion> find_middle(int& substeps) {
+    middle_ = std::min(kMiddleTets, request_.most_tets);
+    for (int failures = 0; middle_ <= request_.most_tets && failures < kMostFailures; ++failures) {
       if (auto motion = pilot(middle_, substeps)) return motion;
+      if (request_.given_substeps == 0 && 2 * substeps <= request_.most_substeps)
+        if (auto motion = pilot(middle_, 2 * substeps)) {
+          substeps *= 2;
+          return motion;
+        }
+      middle_ *= kMeshRatio;
+    }
     return std::nullopt;
   }
 
   /// Steps doubled on the middle mesh until the rest of the error is small; where they are given, twice.
   bool choose_steps() {
     const bool is_given = request_.given_substeps > 0;
-    const int first = choice_.chosen.substeps;
+    int first = choice_.chosen.substeps;
     const double wanted = kTimeShare * request_.error;
     std::optional<SampledMotion> longer = find_middle(first);
     if (!longer) return false;
@@ -126,8 +137,10 @@ class Dial {
     const double most = static_cast<double>(request_.most_tets), given = static_cast<double>(request_.given_tets);
     const double wanted = kMeshShare * request_.error * request_.size;
     double least = 0;  // all that the rung before could have decided
+    int failures = 0;
     for (std::int64_t tets = kFirstTets; tets <= request_.most_tets; tets *= kMeshRatio) {
       std::optional<SampledMotion> motion = pilot(tets, rung_steps());
+      if (!motion && ++failures == kMostFailures) return false;
       if (!motion) continue;
       meshes_.add(static_cast<double>(tets), std::move(*motion));
       if (meshes_.count() < kFewestRungs) continue;
@@ -175,7 +188,8 @@ class Dial {
     const double growth =
         std::max(1.0, std::pow(static_cast<double>(choice_.chosen.tets) / static_cast<double>(middle_), 2.0 / 3));
     const bool is_given = request_.given_tolerance > 0;
-    const std::optional<SampledMotion> exact = pilot(middle_, substeps, kExactTolerance);
+    std::optional<SampledMotion> exact = pilot(middle_, substeps, kExactTolerance);
+    if (!exact) exact = pilot(middle_, substeps, kTightestTolerance);
     if (!exact) return false;
     choice_.chosen.tolerance = is_given ? request_.given_tolerance : request_.loosest_tolerance;
     for (;; choice_.chosen.tolerance /= 10) {
@@ -196,6 +210,10 @@ class Dial {
 };
 
 }  // namespace
+
+double attainable_error(const ErrorParts& parts) {
+  return std::max({parts.total(), parts.mesh / kMeshShare, parts.time / kTimeShare, parts.algebra / kAlgebraShare});
+}
 
 std::optional<DialChoice> turn_dial(const DialRequest& request, const PilotRun& run) {
   CHECK(request.error > 0);

@@ -41,6 +41,9 @@ struct ErrorParts {
   double total() const { return mesh + time + algebra; }
 };
 
+/// Least wanted error for which these parts would do: each part may have its share of it only.
+double attainable_error(const ErrorParts& parts);
+
 struct DialChoice {
   Discretization chosen;
   ErrorParts believed;                    ///< of `chosen`

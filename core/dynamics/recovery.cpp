@@ -23,6 +23,10 @@ bool is_held(const HeldBody& held, const Tet& tet) {
 /// Far above every threshold, and a float still counts shares of a step there.
 constexpr float kMostSteps = 65536;
 
+float pace_of(double seconds) {
+  return static_cast<float>(std::min(1.0, seconds / kPaceSeconds));
+}
+
 void add(float pace, float& steps) {
   steps = std::min(kMostSteps, steps + pace);
 }
@@ -113,7 +117,7 @@ void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, st
                     double seconds, ElementTroubles& troubles, RecoveryReport& report) {
   if (flat == 0 && troubles.empty()) return;
   troubles.resize(body.tets.size());
-  const auto pace = static_cast<float>(std::min(1.0, seconds / kPaceSeconds));
+  const float pace = pace_of(seconds);
   const std::vector<std::uint8_t> bad = find_bad(body, positions, held, pace, troubles),
                                   may_give_up = find_held_pieces(body, held);
   for (std::size_t e = 0; e < bad.size(); ++e) {
@@ -140,8 +144,9 @@ void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, st
     troubles = {};
 }
 
-void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, ElementTroubles& troubles,
-                     std::span<const Quaternion> guesses, std::span<Quaternion> rotations, RecoveryReport& report) {
+void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, double seconds,
+                     ElementTroubles& troubles, std::span<const Quaternion> guesses, std::span<Quaternion> rotations,
+                     RecoveryReport& report) {
   std::vector<std::size_t> sharing;
   std::vector<Tet> tets;
   for (std::size_t e = 0; e < troubles.size(); ++e)
@@ -167,6 +172,7 @@ void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, E
     const Patch& patch = patches[patch_of(e)];
     const auto leader = static_cast<std::size_t>(patch.leader);
     if (is_drawn_out(patch)) {
+      take(pace_of(seconds), troubles[e].shared_steps);
       troubles[e].sharing = 0;
       continue;
     }

@@ -63,9 +63,11 @@ void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, st
                     double seconds, ElementTroubles& troubles, RecoveryReport& report);
 
 /// Gives the elements with steps left to share the rotation nearest to the sum of V F over their patch; those of a
-/// patch that is drawn out (kDrawnOut) lose these steps and keep their own. rotations: those of the elements alone in,
-/// results out; guesses: those of the step before, for ties. Sets elements and patches.
-void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, ElementTroubles& troubles,
-                     std::span<const Quaternion> guesses, std::span<Quaternion> rotations, RecoveryReport& report);
+/// patch that is drawn out (kDrawnOut) lose these steps, which do not count as tried, and keep their own. rotations:
+/// those of the elements alone in, results out; seconds: of the step; guesses: rotations of the step before, for ties.
+/// Sets elements and patches.
+void share_rotations(const ElasticBody& body, std::span<const Vec3> positions, double seconds,
+                     ElementTroubles& troubles, std::span<const Quaternion> guesses, std::span<Quaternion> rotations,
+                     RecoveryReport& report);
 
 }  // namespace softreel

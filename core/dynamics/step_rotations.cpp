@@ -43,7 +43,7 @@ RecoveryReport find_step_rotations(Simulator::Parts& parts, double frame, StepWo
   const std::vector<std::uint8_t> held_pieces = parts.held_pieces(work.pinned, work.pulls);
   count_troubles(parts.body, positions, flat, {work.pinned.held, held_pieces, parts.pieces}, work.step.h, work.troubles,
                  report);
-  share_rotations(parts.body, positions, work.troubles, parts.state.rotations, work.rotations, report);
+  share_rotations(parts.body, positions, work.step.h, work.troubles, parts.state.rotations, work.rotations, report);
   log_recovery(parts, frame, report);
   return report;
 }

@@ -136,11 +136,12 @@ TexturePicture read_png_16(const std::string& path) {
   return picture;
 }
 
-DisplayImage read_jpeg(const std::string& path) {
+/// PNG or JPEG: the numbers of its colours as they are stored, whatever gamma or transparency the file tells.
+DisplayImage read_stored(const std::string& path, const char* kind) {
   int width = 0, height = 0, components = 0;
   stbi_uc* data = stbi_load(path.c_str(), &width, &height, &components, 3);
   const StbPixels owner(data, &stbi_image_free);
-  if (data == nullptr) throw unreadable(path, stbi_failure_reason(), "a JPEG picture");
+  if (data == nullptr) throw unreadable(path, stbi_failure_reason(), kind);
   return {width, height, {data, data + 3 * pixel_count(width, height)}};
 }
 
@@ -200,6 +201,17 @@ std::vector<std::uint8_t> encode_exr(const Image& image) {
   return stream.take();
 }
 
+DisplayImage over_grey(DisplayImage image) {
+  constexpr int kGrey = 128;
+  for (std::size_t k = 0; k < image.alpha.size(); ++k)
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::uint8_t& value = image.pixels[3 * k + c];
+      value = static_cast<std::uint8_t>((value * image.alpha[k] + kGrey * (255 - image.alpha[k]) + 127) / 255);
+    }
+  image.alpha.clear();
+  return image;
+}
+
 DisplayImage read_png(const std::string& path) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
@@ -251,8 +263,10 @@ TexturePicture read_texture_picture(const std::string& path) {
   const auto of_numbers = [](EnvironmentImage image) {
     return TexturePicture{image.width, image.height, std::move(image.pixels), 32};
   };
-  if (end == "png") return stbi_is_16_bit(path.c_str()) != 0 ? read_png_16(path) : of_display(read_png(path));
-  if (end == "jpg" || end == "jpeg") return of_display(read_jpeg(path));
+  if (end == "png")
+    return stbi_is_16_bit(path.c_str()) != 0 ? read_png_16(path)
+                                             : of_display(read_stored(path, "a complete PNG picture"));
+  if (end == "jpg" || end == "jpeg") return of_display(read_stored(path, "a JPEG picture"));
   if (end == "hdr") return of_numbers(read_hdr(path));
   if (end != "exr")
     throw unreadable(path, fmt::format("'.{}' names no known format", end),
@@ -275,7 +289,7 @@ EnvironmentImage read_environment(const std::string& path) {
   else if (end == "png")
     image = from_display(read_png(path));
   else if (end == "jpg" || end == "jpeg")
-    image = from_display(read_jpeg(path));
+    image = from_display(read_stored(path, "a JPEG picture"));
   else
     throw unreadable(path, fmt::format("'.{}' names no known format", end),
                      "files ending in .exr, .hdr, .png, .jpg, .jpeg");

@@ -25,6 +25,9 @@ struct DisplayImage {
   std::vector<std::uint8_t> alpha = {};  ///< height x width, not premultiplied; empty: opaque
 };
 
+/// The picture on middle grey where it is not opaque, so that shadows caught in the alpha are seen and compared.
+DisplayImage over_grey(DisplayImage image);
+
 /// Channels R, G, B times 2^exposure, through the view transform, rounded to 8 bits (no dithering: equal frames are
 /// equal bits). A channel A becomes the alpha; the colours are divided by it first.
 DisplayImage to_display(const Image& image, ViewTransform view, float exposure);

@@ -94,6 +94,12 @@ float distance_to(const Stroke& stroke, const Vec2f& point) {
 void blend(DisplayImage& image, int x, int y, const Vec3f& color, float share) {
   const std::size_t at =
       3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+  if (!image.alpha.empty()) {  // over straight colours: what is behind counts by its alpha
+    std::uint8_t& alpha = image.alpha[at / 3];
+    const float sum = share + (1 - share) * static_cast<float>(alpha) / 255;
+    if (sum > 0) share /= sum;
+    alpha = static_cast<std::uint8_t>(std::lround(255 * sum));
+  }
   for (int c = 0; c < 3; ++c) {
     std::uint8_t& value = image.pixels[at + static_cast<std::size_t>(c)];
     const float mixed = (1 - share) * static_cast<float>(value) + share * 255 * color[c];

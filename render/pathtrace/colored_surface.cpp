@@ -84,10 +84,12 @@ ColoredSurface::ColoredSurface(const MotionMesh& mesh, float least_roughness)
 }
 
 void ColoredSurface::prepare_tables() {
-  Appearance appearance = mesh_.appearance;
+  Appearance appearance = mesh_.appearance, blurred = appearance;
   plain_ = AlbedoTables::of(appearance);
-  appearance.roughness = std::max(appearance.roughness, least_roughness_);
-  plain_blurred_ = AlbedoTables::of(appearance);
+  blurred.roughness = std::max(appearance.roughness, least_roughness_);
+  blurred.coat_roughness = std::max(appearance.coat_roughness, least_roughness_);
+  plain_blurred_ = AlbedoTables::of(blurred);
+  const bool coat_differs = appearance.coat > 0 && blurred.coat_roughness != appearance.coat_roughness;
   const auto& roughness = mesh_.coloring.maps.roughness;
   if (!roughness) return;
   const std::vector<float>& texels = roughness->levels.front().texels;
@@ -97,8 +99,9 @@ void ColoredSurface::prepare_tables() {
   const int steps = static_cast<int>(std::ceil(range / kRoughnessStep));
   roughness_step_ = steps > 0 ? range / static_cast<float>(steps) : 1.0f;
   for (int k = 0; k <= steps; ++k) {
-    appearance.roughness = first_roughness_ + static_cast<float>(k) * roughness_step_;
+    appearance.roughness = blurred.roughness = first_roughness_ + static_cast<float>(k) * roughness_step_;
     tables_.push_back(AlbedoTables::of(appearance));
+    if (coat_differs) blurred_tables_.push_back(AlbedoTables::of(blurred));
   }
 }
 
@@ -217,10 +220,11 @@ void ColoredSurface::bend(const RayHit& hit, const Ray& ray, const TextureGradie
 
 Bsdf ColoredSurface::material(const Appearance& appearance, bool textured, bool blurred) const {
   if (!textured) return {appearance, blurred ? plain_blurred_ : plain_};
+  const std::vector<AlbedoTables>& tables = blurred && !blurred_tables_.empty() ? blurred_tables_ : tables_;
   const float place = std::max(0.0f, (appearance.roughness - first_roughness_) / roughness_step_);
-  const std::size_t k = std::min(static_cast<std::size_t>(place), tables_.size() - 1);
-  if (k + 1 == tables_.size()) return {appearance, tables_[k]};
-  return {appearance, AlbedoTables::between(tables_[k], tables_[k + 1], place - static_cast<float>(k))};
+  const std::size_t k = std::min(static_cast<std::size_t>(place), tables.size() - 1);
+  if (k + 1 == tables.size()) return {appearance, tables[k]};
+  return {appearance, AlbedoTables::between(tables[k], tables[k + 1], place - static_cast<float>(k))};
 }
 
 Bsdf ColoredSurface::at(const RayHit& hit, const Ray& ray, float width, bool blurred, SurfacePoint& point) const {

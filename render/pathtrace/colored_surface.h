@@ -34,9 +34,10 @@ class ColoredSurface {
 
   const MotionMesh& mesh_;
   float least_roughness_;
-  std::vector<Vec2f> coordinates_;      ///< places in the pictures
-  AlbedoTables plain_, plain_blurred_;  ///< of the appearance's own roughness
-  std::vector<AlbedoTables> tables_;    ///< at first_roughness_ + k roughness_step_
+  std::vector<Vec2f> coordinates_;            ///< places in the pictures
+  AlbedoTables plain_, plain_blurred_;        ///< of the appearance's own roughness
+  std::vector<AlbedoTables> tables_;          ///< at first_roughness_ + k roughness_step_
+  std::vector<AlbedoTables> blurred_tables_;  ///< the same under a blurred coat; empty where that is no other
   float first_roughness_ = 0, roughness_step_ = 1;
   /// Per triangle corner: which tangent is its. Corners on one vertex with equal texture coordinates share one.
   std::vector<Triangle> tangent_corners_;

@@ -42,7 +42,7 @@ bool TopLayers::wide_coat() const {
 
 Vec3f TopLayers::tint(float cosine) const {
   if (!has_coat() || !(tint_density_.maxCoeff() > 0)) return Vec3f::Ones();
-  const float refracted = std::sqrt(1 - (1 - cosine * cosine) / (coat_ior_ * coat_ior_));
+  const float refracted = std::sqrt(std::max(1e-6f, 1 - (1 - cosine * cosine) / (coat_ior_ * coat_ior_)));
   const Vec3f through = (-tint_density_ / refracted).array().exp().matrix();
   return Vec3f::Constant(1 - coat_) + coat_ * through;
 }

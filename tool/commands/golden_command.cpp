@@ -42,6 +42,8 @@ Shot at_test_quality(Shot shot) {
     params.width = shot.golden.max_width;
   }
   params.samples = std::min(params.samples, shot.golden.max_samples);
+  params.window = window_of(shot.render);
+  params.time_limit = 0;  // bits would depend on the machine
   params.auxiliary = false;
   params.channels = {};
   return shot;
@@ -108,7 +110,8 @@ class GoldenShot {
     now.frames[frame] = golden_geometry(run_, bodies);
     const Image image =
         tracer_.render(scenes_.at(frame, bodies), shot_.render.params, [] { return cancellation().load(); });
-    const DisplayImage picture = to_display(image, shot_.output.view, static_cast<float>(shot_.output.exposure));
+    const DisplayImage picture =
+        over_grey(to_display(image, shot_.output.view, static_cast<float>(shot_.output.exposure)));
     GoldenPageFrame result{shot_.settings.name, frame, false, {}, {}, {}, {}, {}};
     if (options_.update) {
       keep(golden_path(frame), encode_png(picture));

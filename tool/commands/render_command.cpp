@@ -41,8 +41,13 @@ void remove_outdated(const Session& session, PictureStage& pictures, Outputs& ou
   const ShotSettings& settings = session.shot().settings;
   if (is_movie_outdated(session.shot(), settings.first_frame, settings.last_frame, outputs))
     outputs.remove({outputs.path("mp4")});
-  if (is_sheet_outdated(frames_of_sheet(session), SheetOptions().columns, outputs))
-    outputs.remove({outputs.path("sheet.png")});
+  // One of the sheet command, of other frames or columns, goes with the pictures that it shows.
+  const std::string sheet = outputs.path("sheet.png");
+  const bool is_outdated =
+      session.shot().output.contact_sheet
+          ? is_sheet_outdated(session.shot(), frames_of_sheet(session), SheetOptions().columns, outputs)
+          : removed > 0 && outputs.entry(sheet).has_value();
+  if (is_outdated) outputs.remove({sheet});
 }
 
 }  // namespace

@@ -13,7 +13,13 @@
 namespace softreel {
 namespace {
 
-/// Motion blur would be that of the body, not of the turning.
+/// One moment: motion blur would be that of the body, not of the turning.
+SkinRequest moment_of(const RenderSettings& render) {
+  SkinRequest request = skin_request(render);
+  request.shutter = 0;
+  request.next = false;
+  return request;
+}
 
 /// The camera after a share of a turn about the vertical through its target, to its right.
 Camera turned(Camera camera, double share) {
@@ -23,7 +29,7 @@ Camera turned(Camera camera, double share) {
 }
 
 StageKey file_key(const char* extension, const StageKey& content, const Shot& shot, const BurnIn& words) {
-  KeyHasher key(fmt::format("turntable {} 1", extension));
+  KeyHasher key(fmt::format("turntable {} 2", extension));
   key.add(content).add(shot.output.view).add(shot.output.exposure).add(shot.output.burn_in);
   if (shot.output.burn_in) key.add(words.left).add(words.right);
   return key.key();
@@ -32,7 +38,8 @@ StageKey file_key(const char* extension, const StageKey& content, const Shot& sh
 /// The pictures of one turntable on their way to files.
 class Turntable {
  public:
-  Turntable(Session& session, Outputs& outputs) : session_(session), outputs_(outputs) {}
+  Turntable(Session& session, const SceneStage& scenes, Outputs& outputs)
+      : session_(session), scenes_(scenes), outputs_(outputs) {}
 
   /// Writes the files of a picture unless they are there. True if it was traced.
   bool make(int picture, int count, const Scene& scene, const StageKey& content) {
@@ -49,6 +56,7 @@ class Turntable {
     if (shot.output.exr) outputs_.write(exr_path, exr, encode_exr(image), seconds);
     if (!shot.output.png) return true;
     DisplayImage display = to_display(image, shot.output.view, static_cast<float>(shot.output.exposure));
+    scenes_.draw_legend(display);
     if (shot.output.burn_in) burn_in(display, words);
     outputs_.write(png_path, png, encode_png(display), seconds);
     return true;
@@ -56,6 +64,7 @@ class Turntable {
 
  private:
   Session& session_;
+  const SceneStage& scenes_;
   Outputs& outputs_;
   std::unique_ptr<PathTracer> tracer_;  ///< made when the first picture has to be traced
 };
@@ -72,11 +81,11 @@ int run_turntable(const ShotOptions& options, int count) {
   Outputs outputs(shot.output.directory, shot.settings.name + ".turntable", session.context().log);
   session.prepare(outputs, run);
   SceneStage scenes(run);
-  Scene scene = scenes.at(frame, run.skin(frame, still_request(run.shot().render)));
+  Scene scene = scenes.at(frame, run.skin(frame, moment_of(shot.render)));
   scene.next_camera.reset();  // nothing moves
   scene.camera_motion.clear();
   const Camera start = scene.camera;
-  Turntable turntable(session, outputs);
+  Turntable turntable(session, scenes, outputs);
   int traced = 0;
   session.console().begin("pictures", count);
   for (int picture = 1; picture <= count; ++picture) {

@@ -39,12 +39,8 @@ void check_render(const Place& place, const TomlValue& value, RenderSettings& re
     fail(value.find("shutter_closing") != nullptr ? "shutter_closing" : "shutter_opening",
          "the shutter would close before it is open", "shutter_opening and shutter_closing at most 1 together",
          "Make one of the two shorter.");
-  params.window = {};
-  if (render.crop == Vec4(0, 0, 1, 1) && render.overscan == 0) return;
-  const auto pixel = [](double share, int size) { return static_cast<int>(std::lround(share * size)); };
-  const int more_x = pixel(render.overscan, params.width), more_y = pixel(render.overscan, params.height);
-  params.window = {pixel(render.crop[0], params.width) - more_x, pixel(render.crop[1], params.height) - more_y,
-                   pixel(render.crop[2], params.width) + more_x, pixel(render.crop[3], params.height) + more_y};
+  params.window = window_of(render);
+  if (params.window == PixelWindow{}) return;
   if (params.window.width() < 1 || params.window.height() < 1)
     fail("crop", "no pixel is left", "[left, top, right, bottom], left below right and top below bottom",
          "Give the larger numbers last.");

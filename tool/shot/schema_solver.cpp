@@ -125,8 +125,10 @@ void add_dial(Table<Shot>& t) {
         "integrator is \"bdf2\" where none is given; each run says the error it believes in. The error of a body is "
         "another: how far its tetrahedra may be from its surface at rest.",
         "none: nothing is chosen")
-      .add("max_tets", of_dial(&DialSettings::max_tets), whole<std::int64_t>(1000, 500000000), "",
-           "error: the most tetrahedra of a body. If they do not do, the run stops and says so.");
+      .add("max_tets", of_dial(&DialSettings::max_tets), whole<std::int64_t>(12000, 500000000), "",
+           "error: the most tetrahedra of a body; the coarse runs that judge it take 12000. If they do not do, the run "
+           "stops "
+           "and says so.");
 }
 
 void add_limits(Table<Shot>& t) {

@@ -3,6 +3,7 @@
 /// tool/shot/schema holds the one table of fields that reads, checks and documents these structs.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -57,6 +58,8 @@ struct TextureSettings {
   double normal_strength = 1;
   double bump_height = 0.01;  ///< m
 
+  /// In the order of the members.
+  std::array<std::string*, 4> paths() { return {&base_color, &roughness, &normal, &bump}; }
   bool any() const { return !base_color.empty() || !roughness.empty() || !normal.empty() || !bump.empty(); }
 };
 
@@ -255,6 +258,9 @@ struct Shot {
   OutputSettings output;
   GoldenSettings golden;
 };
+
+/// What of the picture crop and overscan leave, in its pixels; all 0 where they say nothing.
+PixelWindow window_of(const RenderSettings& render);
 
 /// The solver of one body: the shot's, with what the body says of its own.
 SolverParams solver_of(const Shot& shot, const BodySettings& body);

@@ -28,8 +28,10 @@ SimulationState rest_of(const TetMesh& mesh) {
           std::vector<Quaternion>(mesh.tets.size(), Quaternion::Identity())};
 }
 
-void require(bool is_solved, int frame) {
-  if (!is_solved) throw work_error(fmt::format("frame {} could not be solved", frame));
+void require(const StepReport& report, int frame) {
+  if (report.ok()) return;
+  throw work_error(fmt::format("frame {} could not be solved{}{}", frame, report.culprit.empty() ? "" : "; worst at ",
+                               report.culprit));
 }
 
 }  // namespace
@@ -94,39 +96,35 @@ std::vector<Vec3> DialPilots::points_of(const Simulator& simulator, const Filled
 SampledMotion DialPilots::move(Simulator& simulator, const FilledBody& filled) const {
   simulator.set_state(rest_of(filled.mesh));
   const int start = first_simulated_frame(shot_);
-  if (shot_.settings.start == StartState::Equilibrium) require(simulator.find_equilibrium(start).ok(), start);
+  if (shot_.settings.start == StartState::Equilibrium) require(simulator.find_equilibrium(start), start);
   SampledMotion motion;
   for (int frame = start; frame <= shot_.settings.last_frame; ++frame) {
     if (frame > start) {
       const FrameReport report = advance_to_frame(
           simulator, frame, shot_.settings.fps, [this] { quiet_.stop_if_cancelled(); }, [](int) {});
-      require(report.ok(), frame);
+      require(report.last, frame);
     }
     if (frame >= shot_.settings.first_frame) motion.push_back(points_of(simulator, filled));
   }
   return motion;
 }
 
-/// A few frames in order; all of them as stations on the way where the few are too far apart.
+/// A few frames are looked at. All between are walked, as the turns of pins are only known from frame to frame; unless
+/// no frame of the shot knows of another.
 SampledMotion DialPilots::balance(Simulator& simulator, const FilledBody& filled) const {
   const int count = shot_.settings.last_frame - shot_.settings.first_frame + 1;
   const int stride = (count + kMostStaticFrames - 1) / kMostStaticFrames;
-  if (auto motion = balance_every(stride, stride, simulator, filled)) return *motion;
-  if (auto motion = balance_every(1, stride, simulator, filled)) return *motion;
-  throw work_error("an equilibrium could not be found");
-}
-
-std::optional<SampledMotion> DialPilots::balance_every(int station, int stride, Simulator& simulator,
-                                                       const FilledBody& filled) const {
+  const int station = shot_.settings.independent ? stride : 1;
   simulator.set_state(rest_of(filled.mesh));
   SampledMotion motion;
   // From the last frame backwards, so that the end of the motion is among the frames.
-  const int count = shot_.settings.last_frame - shot_.settings.first_frame;
-  for (int i = count % stride; i <= count; i += station) {
+  const int last = count - 1;
+  for (int i = station == 1 ? 0 : last % stride; i <= last; i += station) {
     quiet_.stop_if_cancelled();
     if (shot_.settings.independent) simulator.set_state(rest_of(filled.mesh));
-    if (!simulator.find_equilibrium(shot_.settings.first_frame + i).ok()) return std::nullopt;
-    if ((count - i) % stride == 0) motion.push_back(points_of(simulator, filled));
+    const int frame = shot_.settings.first_frame + i;
+    require(simulator.find_equilibrium(frame), frame);
+    if ((last - i) % stride == 0) motion.push_back(points_of(simulator, filled));
   }
   return motion;
 }

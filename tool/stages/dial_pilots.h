@@ -42,8 +42,6 @@ class DialPilots {
   std::vector<Vec3> points_of(const Simulator& simulator, const FilledBody& filled) const;
   SampledMotion move(Simulator& simulator, const FilledBody& filled) const;
   SampledMotion balance(Simulator& simulator, const FilledBody& filled) const;
-  std::optional<SampledMotion> balance_every(int station, int stride, Simulator& simulator,
-                                             const FilledBody& filled) const;
 
   const Shot& shot_;
   const BodySettings& body_;

@@ -13,7 +13,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give another choice.
-constexpr const char* kDialVersion = "dial 2";
+constexpr const char* kDialVersion = "dial 3";
 
 /// Constraints are looked at so many times a frame for the key, whatever step is chosen.
 constexpr int kLooksPerFrame = 16;
@@ -60,17 +60,19 @@ DialChoice unpack(std::span<const std::uint8_t> bytes) {
 }
 
 /// What is not reached is an error where the dial had all in hand, else what the shot gives is to blame.
-void require_reached(const Shot& shot, const BodySettings& body, const BodyDial& dial, const RunContext& context) {
+void require_reached(const Shot& shot, const BodySettings& body, const LoadedBody& loaded, const BodyDial& dial,
+                     const RunContext& context) {
   if (dial.choice.reached) return;
-  const bool dial_chose_all = !has_size(body) && (is_static(shot) || shot.solver.substeps == 0);
+  const bool dial_chose_all = !has_size(body) && !loaded.given && (is_static(shot) || shot.solver.substeps == 0);
   const std::string what = fmt::format("{}: solver.error = {:.3g} % is not reached for body \"{}\": {}", shot.path,
                                        100 * dial.asked, body.name, describe(dial, shot));
   if (!dial_chose_all) return context.log.warn(what + ". What the shot gives itself stays.");
   throw input_error(
-      fmt::format("{}.\n  Accepted: {:.2g} % and more with solver.max_tets = {} and solver.max_substeps = {}. Raise "
+      fmt::format("{}.\n  Accepted: {:.1f} % and more with solver.max_tets = {} and solver.max_substeps = {}. Raise "
                   "error, or these "
                   "two.",
-                  what, 101 * dial.choice.believed.total(), shot.dial.max_tets, shot.solver.max_substeps));
+                  what, std::ceil(1000 * attainable_error(dial.choice.believed)) / 10, shot.dial.max_tets,
+                  shot.solver.max_substeps));
 }
 
 }  // namespace
@@ -103,6 +105,9 @@ StageKey dial_key(const Shot& shot, const BodySettings& body, const LoadedBody& 
       .add(simulation_keys(looked_at, solver_of(looked_at, body), constraints, filled_key(body, loaded),
                            materials.key()))
       .add(shot.settings.first_frame)
+      .add(body.mode)
+      .add(body.graded)
+      .add(body.thickness)
       .add(shot.dial.error)
       .add(shot.dial.max_tets)
       .add(shot.solver.substeps)
@@ -129,12 +134,14 @@ BodyDial turn_body_dial(const Shot& shot, const BodySettings& body, const Loaded
         fmt::format("{}: solver.error: no coarse run of body \"{}\" could be made to judge the error by: {}\n  "
                     "Accepted: a shot that can be simulated with solver.max_tets = {} tetrahedra a body. Say tets and "
                     "substeps instead of error.",
-                    shot.path, body.name, pilots.problem(), shot.dial.max_tets));
+                    shot.path, body.name,
+                    pilots.problem().empty() ? "solver.max_substeps leaves no two steps to compare" : pilots.problem(),
+                    shot.dial.max_tets));
   };
   const Cache::Produced produced = context.cache.produce(
       kDialStage, key, [&] { context.stop_if_cancelled(); }, turn);
   const BodyDial dial{shot.dial.error, unpack(produced.bytes), produced.seconds, produced.from_cache};
-  require_reached(shot, body, dial, context);
+  require_reached(shot, body, loaded, dial, context);
   return dial;
 }
 

@@ -29,7 +29,13 @@ std::string name_of(const std::string& path) {
 /// The shot without what moves no pixel: paths (of files by name only), output, threads.
 Shot without_places(Shot shot) {
   for (BodySettings& body : shot.bodies) body.mesh = body.tetrahedra = "";
-  shot.environment_image.clear();
+  // The slash keeps the name from being completed by the working directory.
+  const auto keep_name = [](std::string& path) {
+    if (!path.empty()) path = "/" + name_of(path);
+  };
+  keep_name(shot.environment_image);
+  for (auto& [name, material] : shot.materials)
+    for (std::string* path : material.textures.paths()) keep_name(*path);
   const OutputSettings output = shot.output;
   shot.output = {};
   shot.output.view = output.view;

@@ -21,6 +21,12 @@ class MaterialTextures {
   /// numbers cannot be used.
   void require_match(const BodySettings& body, const LoadedBody& loaded) const;
 
+  /// Whether the body has more than one look.
+  bool varies(const BodySettings& body) const {
+    const TextureSettings& t = material(body.material).textures;
+    return t.any() || t.vertex_colors;
+  }
+
   /// Everything that the coloring of a body depends on beside its shape; nothing for a material of one look.
   void add_key(KeyHasher& key, const BodySettings& body, const LoadedBody& loaded) const;
 

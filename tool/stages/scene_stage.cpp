@@ -223,7 +223,11 @@ Appearance SceneStage::appearance(std::size_t body, int frame) const {
 void SceneStage::add_coloring(KeyHasher& key) const {
   const HeatSettings& heat = run_.shot().render.heat;
   if (heat.quantity == HeatQuantity::None) {
-    for (std::size_t b = 0; b < run_.body_count(); ++b) textures_.add_key(key, run_.settings(b), run_.loaded(b));
+    for (std::size_t b = 0; b < run_.body_count(); ++b)
+      if (textures_.varies(run_.settings(b))) {
+        key.add(static_cast<int>(b));  // bodies of one mesh may swap their materials
+        textures_.add_key(key, run_.settings(b), run_.loaded(b));
+      }
     return;
   }
   key.add("heat 1").add(heat.quantity);

@@ -121,6 +121,12 @@ SettingsSnapshot snapshot(const ShotRun& run) {
     with_paths.environment_image = absolute(with_paths.environment_image);
     snapshot[with_paths.environment_image] = checksum_of(with_paths.environment_image);
   }
+  for (auto& [name, material] : with_paths.materials)
+    for (std::string* path : material.textures.paths())
+      if (!path->empty()) {
+        *path = absolute(*path);
+        snapshot[*path] = checksum_of(*path);
+      }
   snapshot[kShotEntry] = to_toml(with_paths);
   return snapshot;
 }

@@ -11,9 +11,11 @@
 namespace softreel {
 namespace {
 
-StageKey sheet_key(const std::vector<int>& frames, int columns, const Outputs& outputs) {
-  KeyHasher key("sheet 1");
-  key.add(outputs.shot_name()).add(frames).add(columns);
+StageKey sheet_key(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs) {
+  KeyHasher key("sheet 2");
+  const ShotSettings& settings = shot.settings;  // of the title
+  key.add(outputs.shot_name()).add(settings.fps).add(settings.first_frame).add(settings.last_frame);
+  key.add(frames).add(columns);
   for (const int frame : frames) {
     const auto entry = outputs.entry(outputs.frame_path(frame, "png"));
     key.add(entry ? entry->checksum : "");
@@ -41,7 +43,7 @@ std::vector<int> sheet_frames(int first, int last, int count) {
 std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int columns, Outputs& outputs,
                        const RunContext& context) {
   const std::string path = outputs.path("sheet.png");
-  const StageKey key = sheet_key(frames, columns, outputs);
+  const StageKey key = sheet_key(shot, frames, columns, outputs);
   if (outputs.is_done(path, key)) return path;
   const ScopedStage stage(context.times, "sheet");
   const auto start = std::chrono::steady_clock::now();
@@ -56,8 +58,9 @@ std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int col
   return path;
 }
 
-bool is_sheet_outdated(const std::vector<int>& frames, int columns, const Outputs& outputs) {
-  return outputs.claimed_state(outputs.path("sheet.png"), sheet_key(frames, columns, outputs)) == OutputState::Stale;
+bool is_sheet_outdated(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs) {
+  return outputs.claimed_state(outputs.path("sheet.png"), sheet_key(shot, frames, columns, outputs)) ==
+         OutputState::Stale;
 }
 
 }  // namespace softreel

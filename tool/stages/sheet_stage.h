@@ -24,6 +24,6 @@ std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int col
                        const RunContext& context);
 
 /// True if a sheet is there that was not made of the frames as the manifest has them now.
-bool is_sheet_outdated(const std::vector<int>& frames, int columns, const Outputs& outputs);
+bool is_sheet_outdated(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs);
 
 }  // namespace softreel

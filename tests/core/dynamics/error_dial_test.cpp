@@ -112,7 +112,12 @@ TEST(ErrorDial, KeepsWhatIsGivenAndJudgesIt) {
 }
 
 TEST(ErrorDial, NothingIsChosenWhereNoPilotRuns) {
-  EXPECT_FALSE(turn_dial({.error = 0.01}, [](const Discretization&) { return std::optional<SampledMotion>(); }));
+  int runs = 0;
+  EXPECT_FALSE(turn_dial({.error = 0.01}, [&](const Discretization&) {
+    ++runs;
+    return std::optional<SampledMotion>();
+  }));
+  EXPECT_LE(runs, 10) << "a shot that cannot be simulated is not tried on ever finer meshes";
 }
 
 }  // namespace

@@ -36,15 +36,15 @@ SolverParams controlled(Integrator integrator, double step_error) {
   return params;
 }
 
-struct SampledMotion {
+struct Motion {
   int steps = 0, rejected = 0, at_rest = 0, parts = 0;
   std::vector<Vec3> positions;
   double shortest = 1;
 };
 
-SampledMotion simulate(const BodyModel& model, const SolverParams& params, int frames) {
+Motion simulate(const BodyModel& model, const SolverParams& params, int frames) {
   Bench bench(model, params);
-  SampledMotion result;
+  Motion result;
   for (int frame = 1; frame <= frames; ++frame) {
     const FrameReport report = advance_to_frame(
         bench.simulator, frame, kFps, [] {}, [&](int) { ++result.parts; });
@@ -129,7 +129,7 @@ TEST(FrameSteps, GetShorterUntilTheErrorIsWhatWasAskedFor) {
     double last_distance = 1;
     int last_steps = 0;
     for (const double step_error : {1e-3, 1e-4, 1e-5}) {
-      const SampledMotion found = simulate(model, controlled(integrator, step_error), 6);
+      const Motion found = simulate(model, controlled(integrator, step_error), 6);
       EXPECT_EQ(found.parts, 6) << "every frame is met";
       EXPECT_GT(found.steps, last_steps);
       EXPECT_LT(found.rejected, found.steps);
@@ -259,7 +259,7 @@ TEST(Rest, ChangesNothingBeyondItsTolerance) {
     skipped.rest_tolerance = 1e-6;
     skipped.force_tolerance = 1e-5;
     // Damped by 20 / s in its mass, it comes to rest within two seconds after its pin does.
-    const SampledMotion all = simulate(carried_bar(20), stepped, 240), some = simulate(carried_bar(20), skipped, 240);
+    const Motion all = simulate(carried_bar(20), stepped, 240), some = simulate(carried_bar(20), skipped, 240);
     EXPECT_EQ(all.at_rest, 0);
     EXPECT_GT(some.at_rest, 60) << static_cast<int>(integrator);
     EXPECT_EQ(some.steps, all.steps);

@@ -32,15 +32,15 @@ BodyModel half_moved_bar() {
   return model;
 }
 
-struct SampledMotion {
+struct Motion {
   std::vector<Vec3> positions;
   FrameReport work;  ///< summed over the frames
 };
 
-SampledMotion simulate(const SolverParams& params, int thread_count = 1) {
+Motion simulate(const SolverParams& params, int thread_count = 1) {
   Bench bench(half_moved_bar(), params, thread_count);
   EXPECT_TRUE(bench.simulator.find_equilibrium(0).ok());
-  SampledMotion motion;
+  Motion motion;
   for (int frame = 1; frame <= kFrames; ++frame) {
     const FrameReport report = advance_to_frame(
         bench.simulator, frame, kFps, [] {}, [](int) {});
@@ -70,8 +70,8 @@ double greatest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 }
 
 TEST(KeptMatrices, ChangeTheAnswerByLessThanTheTolerance) {
-  const SampledMotion kept = simulate(params_with(0.1, true)), made = simulate(params_with(0, false)),
-                      exact = simulate(params_with(0, false, 1e-10));
+  const Motion kept = simulate(params_with(0.1, true)), made = simulate(params_with(0, false)),
+               exact = simulate(params_with(0, false, 1e-10));
   EXPECT_GT(kept.work.kept_matrices, 0.2 * kept.work.steps) << "half of the body hardly moves";
   EXPECT_GE(kept.work.kept_hierarchies, kFrames);
   EXPECT_EQ(made.work.kept_hierarchies, 0);

@@ -255,7 +255,7 @@ TEST(ShareRotations, GivesEachPatchTheRotationOfItsSumAndOthersTheirOwn) {
   find_rotations(bar.body, RotationMethod::Consistent, bar.positions, own, Threads(1));
   std::vector<Quaternion> shared = own;
   RecoveryReport report;
-  share_rotations(bar.body, bar.positions, bar.troubles, own, shared, report);
+  share_rotations(bar.body, bar.positions, kPaceSeconds, bar.troubles, own, shared, report);
   EXPECT_EQ(report.patches, 2);
   EXPECT_EQ(report.elements, count_sharing(bar.troubles));
   for (std::size_t e = 0; e < n; ++e) {
@@ -276,14 +276,15 @@ TEST(ShareRotations, LeavesAPatchAloneThatIsDrawnOut) {
     }
     bar.troubles.assign(n, {});
     for (std::size_t e = 0; e < n; ++e)
-      if (testing::centroid(bar.mesh, e).x() < 0.5) bar.troubles[e].sharing = 1;
+      if (testing::centroid(bar.mesh, e).x() < 0.5) bar.troubles[e].sharing = bar.troubles[e].shared_steps = 1;
     const std::vector<Quaternion> own(n, Quaternion::Identity());
     std::vector<Quaternion> shared = own;
     RecoveryReport report;
-    share_rotations(bar.body, bar.positions, bar.troubles, own, shared, report);
+    share_rotations(bar.body, bar.positions, kPaceSeconds, bar.troubles, own, shared, report);
     const bool left_alone = stretch > kDrawnOut;
     EXPECT_EQ(report.elements == 0, left_alone);
     EXPECT_EQ(bar.sharing(), report.elements);
+    EXPECT_EQ(bar.troubles.front().shared_steps == 0, left_alone) << "what was not tried does not count";
     EXPECT_EQ(shared.front().angularDistance(own.front()) == 0, left_alone);
   }
 }
