@@ -1,20 +1,25 @@
-/// GLSL programs of the preview: one lit surface, one background. OpenGL 3.3.
+/// GLSL programs of the preview: lit surfaces, background, shadows and edges, marks. OpenGL 3.3.
 #pragma once
 
 namespace softreel {
 
 inline constexpr int kMaxPreviewLamps = 8;
 inline constexpr int kMaxPreviewSuns = 4;
+inline constexpr int kMaxPreviewShadows = 4;
+inline constexpr int kShadowSize = 1024;  ///< pixels of a shadow map's edge
 
 inline constexpr const char* kSurfaceVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 color;
 uniform mat4 clip_from_world;
 out vec3 world_position;
 out vec3 world_normal;
+out vec3 base_color;
 void main() {
   world_position = position;
   world_normal = normal;
+  base_color = color;
   gl_Position = clip_from_world * vec4(position, 1.0);
 }
 )";
@@ -73,14 +78,17 @@ void main() {
 )";
 
 /// Lamps are points with the irradiance of the rectangle's centre, wrapped around by its size; the environment lights
-/// by its gradient in the direction of the normal (diffuse) and of the reflection (gloss). No shadows.
+/// by its gradient in the direction of the normal (diffuse) and of the reflection (gloss). Lights with a shadow map
+/// fall only where no body is in between; the edges of their shadows are as soft as `shadow_blur` says, everywhere
+/// alike.
 inline constexpr const char* kSurfaceFragmentShader = R"(
 in vec3 world_position;
 in vec3 world_normal;
+in vec3 base_color;
 out vec4 color;
 
 uniform vec3 eye;
-uniform vec3 base_color, emission;
+uniform vec3 emission;
 uniform float roughness, metallic, specular, transmission;
 uniform bool is_ground, flat_normals;
 uniform bool upright_ground;          // the pattern follows world axes
@@ -90,6 +98,11 @@ uniform int lamps, suns;
 uniform vec3 lamp_center[8], lamp_normal[8], lamp_radiance[8];
 uniform float lamp_area[8];
 uniform vec3 sun_towards[4], sun_irradiance[4];
+uniform int lamp_shadow[8], sun_shadow[4];  // layer of the shadow map; -1: none
+uniform sampler2DArrayShadow shadow_maps;
+uniform mat4 shadow_from_world[4];
+uniform float shadow_blur[4];    // radius of the filter, share of the map
+uniform float shadow_offset[4];  // m along the normal: no surface shades itself
 
 const float kPi = 3.14159265;
 
@@ -115,6 +128,21 @@ float highlight(vec3 n, vec3 v, vec3 l, float alpha) {
   return a2 / (t * t) * 0.25 / ((nv * (1.0 - k) + k) * (nl * (1.0 - k) + k));
 }
 
+// Share of a light that reaches the surface: 12 taps in a spiral of equal areas (Vogel).
+float reached(int layer, vec3 n) {
+  if (layer < 0) return 1.0;
+  vec4 seen = shadow_from_world[layer] * vec4(world_position + shadow_offset[layer] * n, 1.0);
+  if (seen.w <= 0.0) return 1.0;
+  vec3 at = 0.5 * seen.xyz / seen.w + 0.5;
+  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0))) || at.z <= 0.0) return 1.0;
+  float sum = 0.0;
+  for (int k = 0; k < 12; ++k) {
+    float radius = shadow_blur[layer] * sqrt((float(k) + 0.5) / 12.0), angle = 2.39996323 * float(k);
+    sum += texture(shadow_maps, vec4(at.xy + radius * vec2(cos(angle), sin(angle)), layer, min(at.z, 1.0)));
+  }
+  return sum / 12.0;
+}
+
 void main() {
   vec3 albedo = surface_color();
   vec3 v = normalize(eye - world_position);
@@ -129,17 +157,20 @@ void main() {
     vec3 to = lamp_center[k] - world_position;
     float squared = dot(to, to);
     vec3 l = to * inversesqrt(squared);
-    float facing = max(-dot(l, lamp_normal[k]), 0.0);
+    // A sphere has no normal, and faces everything.
+    float facing = lamp_normal[k] == vec3(0.0) ? 1.0 : max(-dot(l, lamp_normal[k]), 0.0);
+    if (dot(n, l) <= 0.0 || facing <= 0.0) continue;
     vec3 irradiance = lamp_radiance[k] * (lamp_area[k] * facing / (squared + 0.25 * lamp_area[k]));
     float widened = min(1.0, alpha + 0.25 * sqrt(lamp_area[k] / squared));
     float narrow = (alpha * alpha) / (widened * widened);  // the same energy over a wider highlight
     vec3 gloss = reflectance(f0, max(dot(v, normalize(v + l)), 0.0)) * highlight(n, v, l, widened) * mix(narrow, 1.0, 0.5);
-    sum += irradiance / kPi * max(dot(n, l), 0.0) * (diffuse + gloss);
+    sum += reached(lamp_shadow[k], n) * irradiance / kPi * dot(n, l) * (diffuse + gloss);
   }
   for (int k = 0; k < suns; ++k) {
     vec3 l = sun_towards[k];
+    if (dot(n, l) <= 0.0) continue;
     vec3 gloss = reflectance(f0, max(dot(v, normalize(v + l)), 0.0)) * highlight(n, v, l, alpha);
-    sum += sun_irradiance[k] / kPi * max(dot(n, l), 0.0) * (diffuse + gloss);
+    sum += reached(sun_shadow[k], n) * sun_irradiance[k] / kPi * dot(n, l) * (diffuse + gloss);
   }
   // Irradiance / pi of a gradient: between its values at the pole and at the horizon, both hemispheres mixed by height.
   vec3 upper = mix(horizon, zenith, 0.6), lower = mix(horizon, nadir, 0.6);
@@ -153,6 +184,45 @@ void main() {
     sum = mix(sum, environment(-v.y), smoothstep(fade_start, fade_end, distance));
   }
   color = vec4(display(sum), 1.0);
+}
+)";
+
+/// Positions alone: depths for shadows, and edges of triangles.
+inline constexpr const char* kPlainVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 position;
+uniform mat4 clip_from_world;
+void main() { gl_Position = clip_from_world * vec4(position, 1.0); }
+)";
+
+inline constexpr const char* kPlainFragmentShader = R"(#version 330 core
+uniform vec4 tint;
+out vec4 color;
+void main() { color = tint; }
+)";
+
+/// Marks over the picture: OverlayVertex of render/preview/gizmo_marks.h, display values.
+inline constexpr const char* kOverlayVertexShader = R"(#version 330 core
+layout(location = 0) in vec4 clip;
+layout(location = 1) in vec2 disk;
+layout(location = 2) in vec3 tone;
+out vec2 place;
+out vec3 shade;
+void main() {
+  place = disk;
+  shade = tone;
+  gl_Position = clip;
+}
+)";
+
+inline constexpr const char* kOverlayFragmentShader = R"(#version 330 core
+in vec2 place;
+in vec3 shade;
+uniform float opacity;
+out vec4 color;
+void main() {
+  float radius = length(place);
+  if (radius > 1.0) discard;
+  color = vec4(radius > 0.75 ? 0.35 * shade : shade, opacity);  // a dark rim stands out from any body
 }
 )";
 
