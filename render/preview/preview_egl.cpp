@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "render/preview/egl/egl_context.h"
@@ -87,13 +89,23 @@ float seen_area(const AreaLight& lamp) {
   return kPi * lamp.u.squaredNorm();
 }
 
+/// More lights than the shader has room for: the first ones, which a shot lists by importance.
+int lamps_of(const Scene& scene) {
+  return std::min(static_cast<int>(scene.area_lights.size()), kMaxPreviewLamps);
+}
+int suns_of(const Scene& scene) {
+  return std::min(static_cast<int>(scene.suns.size()), kMaxPreviewSuns);
+}
+
+/// The first lines of a fragment shader.
+std::string head(ViewTransform view) {
+  return fmt::format("#version 330 core\n#define VIEW {}\n", static_cast<int>(view));
+}
+
 class EglPreview : public Preview {
  public:
   EglPreview() {
     context_.make_current();
-    const std::string common = std::string(kEnvironmentFunctions) + kDisplayFunctions;
-    surface_ = std::make_unique<GlProgram>(kSurfaceVertexShader, common + kSurfaceFragmentShader);
-    background_ = std::make_unique<GlProgram>(kBackgroundVertexShader, common + kBackgroundFragmentShader);
     plain_ = std::make_unique<GlProgram>(kPlainVertexShader, kPlainFragmentShader);
     overlay_ = std::make_unique<GlProgram>(kOverlayVertexShader, kOverlayFragmentShader);
     glGenVertexArrays(1, &no_array_);
@@ -110,19 +122,22 @@ class EglPreview : public Preview {
   }
 
  private:
+  const GlProgram& program(const char* vertex, const std::string& defines, const char* fragment);
+  const GlProgram& surface_program(const Scene& scene, const Ground* ground, ViewTransform view, std::size_t shadows);
   void upload(const Scene& scene, const MotionMesh& ground);
   void draw_shadows(const std::vector<ShadowView>& views) const;
-  void set_common(const GlProgram& program, const Environment& gradient, ViewTransform view, float exposure) const;
-  void set_lights(const Scene& scene) const;
-  void set_shadows(const std::vector<ShadowView>& views) const;
-  void set_ground(const Ground& ground, const Camera& camera) const;
-  void set_appearance(const MotionMesh& mesh) const;
-  void draw_background(const CameraFrame& camera) const;
+  void set_common(const GlProgram& program, const Environment& gradient, float exposure) const;
+  void set_lights(const GlProgram& surface, const Scene& scene) const;
+  void set_shadows(const GlProgram& surface, const std::vector<ShadowView>& views) const;
+  void set_ground(const GlProgram& surface, const Ground& ground, const Camera& camera) const;
+  void set_appearance(const GlProgram& surface, const MotionMesh& mesh) const;
+  void draw_background(const GlProgram& background, const CameraFrame& camera) const;
   void draw_edges(const Eigen::Matrix4f& clip_from_world) const;
   void draw_marks(const std::vector<OverlayVertex>& triangles) const;
 
   EglContext context_;
-  std::unique_ptr<GlProgram> surface_, background_, plain_, overlay_;
+  std::map<std::string, GlProgram> programs_;  ///< by their fragment shader's text
+  std::unique_ptr<GlProgram> plain_, overlay_;
   std::unique_ptr<ShadowLayers> shadows_;
   std::unique_ptr<GpuMarks> marks_;
   std::unique_ptr<Canvas> canvas_;  ///< of the last picture
@@ -130,6 +145,24 @@ class EglPreview : public Preview {
   std::optional<GpuMesh> ground_;
   GLuint no_array_ = 0;  ///< OpenGL draws nothing without one, even where no vertex has an attribute
 };
+
+/// Made when it is first asked for.
+const GlProgram& EglPreview::program(const char* vertex, const std::string& defines, const char* fragment) {
+  const std::string text = defines + kEnvironmentFunctions + kDisplayFunctions + fragment;
+  return programs_.try_emplace(text, vertex, text).first->second;
+}
+
+/// ground: null for bodies.
+const GlProgram& EglPreview::surface_program(const Scene& scene, const Ground* ground, ViewTransform view,
+                                             std::size_t shadows) {
+  const bool checker = ground != nullptr && ground->checker > 0;
+  return program(
+      kSurfaceVertexShader,
+      head(view) + fmt::format("#define GROUND {}\n#define CHECKER {}\n#define LAMPS {}\n#define SUNS {}\n"
+                               "#define SHADOWS {}\n",
+                               ground != nullptr ? 1 : 0, checker ? 1 : 0, lamps_of(scene), suns_of(scene), shadows),
+      kSurfaceFragmentShader);
+}
 
 void EglPreview::upload(const Scene& scene, const MotionMesh& ground) {
   while (bodies_.size() > scene.meshes.size()) bodies_.pop_back();
@@ -154,85 +187,77 @@ void EglPreview::draw_shadows(const std::vector<ShadowView>& views) const {
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void EglPreview::set_common(const GlProgram& program, const Environment& gradient, ViewTransform view,
-                            float exposure) const {
+void EglPreview::set_common(const GlProgram& program, const Environment& gradient, float exposure) const {
   program.use();
   program.set("zenith", Vec3f(gradient.strength * gradient.zenith));
   program.set("horizon", Vec3f(gradient.strength * gradient.horizon));
   program.set("nadir", Vec3f(gradient.strength * gradient.nadir));
   program.set("exposure_scale", std::exp2(exposure));
-  program.set("view", static_cast<int>(view));
 }
 
-void EglPreview::set_lights(const Scene& scene) const {
-  // More lights than the shader has room for: the first ones, which a shot lists by importance.
-  const int lamps = std::min(static_cast<int>(scene.area_lights.size()), kMaxPreviewLamps);
-  const int suns = std::min(static_cast<int>(scene.suns.size()), kMaxPreviewSuns);
-  surface_->set("lamps", lamps);
-  surface_->set("suns", suns);
-  for (int k = 0; k < lamps; ++k) {
+void EglPreview::set_lights(const GlProgram& surface, const Scene& scene) const {
+  for (int k = 0; k < lamps_of(scene); ++k) {
     const AreaLight& lamp = scene.area_lights[static_cast<std::size_t>(k)];
     const bool sphere = lamp.shape == LampShape::Sphere;
-    surface_->set("lamp_center", k, lamp.center);
-    surface_->set("lamp_normal", k, sphere ? Vec3f(Vec3f::Zero()) : Vec3f(lamp.u.cross(lamp.v).normalized()));
-    surface_->set("lamp_radiance", k, lamp.radiance);
-    surface_->set("lamp_area", k, seen_area(lamp));
+    surface.set("lamp_center", k, lamp.center);
+    surface.set("lamp_normal", k, sphere ? Vec3f(Vec3f::Zero()) : Vec3f(lamp.u.cross(lamp.v).normalized()));
+    surface.set("lamp_radiance", k, lamp.radiance);
+    surface.set("lamp_area", k, seen_area(lamp));
   }
-  for (int k = 0; k < suns; ++k) {
+  for (int k = 0; k < suns_of(scene); ++k) {
     const SunLight& sun = scene.suns[static_cast<std::size_t>(k)];
-    surface_->set("sun_towards", k, Vec3f(-sun.direction.normalized()));
-    surface_->set("sun_irradiance", k, sun.irradiance);
+    surface.set("sun_towards", k, Vec3f(-sun.direction.normalized()));
+    surface.set("sun_irradiance", k, sun.irradiance);
   }
 }
 
-void EglPreview::set_shadows(const std::vector<ShadowView>& views) const {
-  for (int k = 0; k < kMaxPreviewLamps; ++k) surface_->set("lamp_shadow", k, -1);
-  for (int k = 0; k < kMaxPreviewSuns; ++k) surface_->set("sun_shadow", k, -1);
+void EglPreview::set_shadows(const GlProgram& surface, const std::vector<ShadowView>& views) const {
+  for (int k = 0; k < kMaxPreviewLamps; ++k) surface.set("lamp_shadow", k, -1);
+  for (int k = 0; k < kMaxPreviewSuns; ++k) surface.set("sun_shadow", k, -1);
   for (std::size_t layer = 0; layer < views.size(); ++layer) {
     const ShadowView& view = views[layer];
     const int k = static_cast<int>(layer);
-    surface_->set(view.is_sun ? "sun_shadow" : "lamp_shadow", view.light, k);
-    surface_->set("shadow_blur", k, view.blur);
-    surface_->set("shadow_offset", k, view.offset);
-    glUniformMatrix4fv(surface_->at(fmt::format("shadow_from_world[{}]", k).c_str()), 1, GL_FALSE,
+    surface.set(view.is_sun ? "sun_shadow" : "lamp_shadow", view.light, k);
+    surface.set("shadow_blur", k, view.blur);
+    surface.set("shadow_offset", k, view.offset);
+    glUniformMatrix4fv(surface.at(fmt::format("shadow_from_world[{}]", k).c_str()), 1, GL_FALSE,
                        view.clip_from_world.data());
   }
 }
 
-void EglPreview::set_ground(const Ground& ground, const Camera& camera) const {
+void EglPreview::set_ground(const GlProgram& surface, const Ground& ground, const Camera& camera) const {
   const GroundPattern pattern(ground, camera);
   const bool plane = ground.style == GroundStyle::Plane;
-  surface_->set("is_ground", 1);
-  surface_->set("upright_ground", plane ? 1 : 0);
-  surface_->set("checker", ground.checker);
-  surface_->set("checker_color", ground.checker_color);
-  surface_->set("ground_height", ground.height);
-  surface_->set("sweep", ground.sweep);
-  surface_->set("across", pattern.across());
-  surface_->set("along", pattern.along());
+  surface.set("upright_ground", plane ? 1 : 0);
+  surface.set("checker", ground.checker);
+  surface.set("checker_color", ground.checker_color);
+  surface.set("ground_height", ground.height);
+  surface.set("sweep", ground.sweep);
+  surface.set("across", pattern.across());
+  surface.set("along", pattern.along());
   // The plane's edge fades into the sky; a backdrop fills the picture.
-  surface_->set("fade_start", plane ? 0.35f * ground.size : 1e30f);
-  surface_->set("fade_end", plane ? 0.5f * ground.size : 2e30f);
+  surface.set("fade_start", plane ? 0.35f * ground.size : 1e30f);
+  surface.set("fade_end", plane ? 0.5f * ground.size : 2e30f);
 }
 
-void EglPreview::draw_background(const CameraFrame& camera) const {
-  glDisable(GL_DEPTH_TEST);
-  background_->set("forward", camera.forward);
-  background_->set("right", Vec3f(camera.half_width * camera.right));
-  background_->set("up", Vec3f(camera.half_height * camera.up));
+void EglPreview::draw_background(const GlProgram& background, const CameraFrame& camera) const {
+  background.set("forward", camera.forward);
+  background.set("right", Vec3f(camera.half_width * camera.right));
+  background.set("up", Vec3f(camera.half_height * camera.up));
   glBindVertexArray(no_array_);
+  glDepthFunc(GL_LEQUAL);  // it lies at the far end
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
 }
 
-void EglPreview::set_appearance(const MotionMesh& mesh) const {
+void EglPreview::set_appearance(const GlProgram& surface, const MotionMesh& mesh) const {
   const Appearance& look = mesh.appearance;
-  surface_->set("emission", look.emission);
-  surface_->set("roughness", look.roughness);
-  surface_->set("metallic", look.metallic);
-  surface_->set("specular", look.specular);
-  surface_->set("transmission", look.transmission);
-  surface_->set("flat_normals", mesh.times.back().normals.empty() ? 1 : 0);
+  surface.set("emission", look.emission);
+  surface.set("roughness", look.roughness);
+  surface.set("metallic", look.metallic);
+  surface.set("specular", look.specular);
+  surface.set("transmission", look.transmission);
+  surface.set("flat_normals", mesh.times.back().normals.empty() ? 1 : 0);
 }
 
 void EglPreview::draw_edges(const Eigen::Matrix4f& clip_from_world) const {
@@ -284,25 +309,33 @@ DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTra
   canvas_->bind();
   glClear(GL_DEPTH_BUFFER_BIT);
   const Environment gradient = as_gradient(scene.environment);
-  set_common(*background_, gradient, view, exposure);
-  draw_background(camera);
-  set_common(*surface_, gradient, view, exposure);
-  set_lights(scene);
-  set_shadows(shadows);
   const float far = farthest(scene.meshes, ground, style.marks, camera);
   const Eigen::Matrix4f clip = clip_from_world(camera, 1e-3f * far, far);
-  glUniformMatrix4fv(surface_->at("clip_from_world"), 1, GL_FALSE, clip.data());
-  surface_->set("eye", camera.position);
-  surface_->set("is_ground", 0);
+  const auto surface = [&](const Ground* of) -> const GlProgram& {
+    const GlProgram& program = surface_program(scene, of, view, shadows.size());
+    set_common(program, gradient, exposure);
+    set_lights(program, scene);
+    set_shadows(program, shadows);
+    glUniformMatrix4fv(program.at("clip_from_world"), 1, GL_FALSE, clip.data());
+    program.set("eye", camera.position);
+    return program;
+  };
+  glEnable(GL_DEPTH_TEST);
+  // From near to far: what is hidden costs nothing.
+  const GlProgram& skin = surface(nullptr);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    set_appearance(scene.meshes[b]);
+    set_appearance(skin, scene.meshes[b]);
     bodies_[b].draw();
   }
   if (scene.ground) {
-    set_ground(*scene.ground, scene.camera);
-    set_appearance(ground);
+    const GlProgram& floor = surface(&*scene.ground);
+    set_ground(floor, *scene.ground, scene.camera);
+    set_appearance(floor, ground);
     ground_->draw();
   }
+  const GlProgram& background = program(kBackgroundVertexShader, head(view), kBackgroundFragmentShader);
+  set_common(background, gradient, exposure);
+  draw_background(background, camera);
   if (style.wireframe) draw_edges(clip);
   draw_marks(overlay_triangles(style.marks, clip, camera.position, width, height));
   DisplayImage image = canvas_->read();

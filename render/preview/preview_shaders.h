@@ -24,8 +24,11 @@ void main() {
 }
 )";
 
-/// The environment's gradient; an image is summed up by three colours.
-inline constexpr const char* kEnvironmentFunctions = R"(#version 330 core
+/// The environment's gradient; an image is summed up by three colours. Fragment shaders begin with "#version 330 core"
+/// and #defines, because software OpenGL computes both sides of every branch at every pixel: VIEW (0 standard, 1
+/// filmic, 2 aces-fit, 3 raw), and for surfaces GROUND (0, 1), CHECKER (0, 1), LAMPS, SUNS, SHADOWS (how many there
+/// are).
+inline constexpr const char* kEnvironmentFunctions = R"(
 uniform vec3 zenith, horizon, nadir;
 vec3 environment(float height) {
   return mix(horizon, height > 0.0 ? zenith : nadir, abs(height));
@@ -35,7 +38,6 @@ vec3 environment(float height) {
 /// Display values, as apply_view of render/image/view_transform.h.
 inline constexpr const char* kDisplayFunctions = R"(
 uniform float exposure_scale;
-uniform int view;  // 0 standard, 1 filmic, 2 aces-fit, 3 raw
 vec3 aces_fit(vec3 linear) {
   const mat3 into = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
   const mat3 back = mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
@@ -47,15 +49,22 @@ vec3 to_srgb(vec3 c) {
 }
 vec3 display(vec3 radiance) {
   vec3 c = max(exposure_scale * radiance, 0.0);
+#if VIEW == 1
   float peak = max(c.r, max(c.g, c.b));
-  if (view == 1 && peak > 0.76) {
+  if (peak > 0.76) {
     float compressed = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
     float whiteness = 1.0 - 1.0 / (0.15 * (peak - compressed) + 1.0);
     c = mix(c * (compressed / peak), vec3(compressed), whiteness);
   }
-  if (view == 2) c = aces_fit(c);
+#elif VIEW == 2
+  c = aces_fit(c);
+#endif
   c = clamp(c, 0.0, 1.0);
-  return view == 3 ? c : to_srgb(c);
+#if VIEW == 3
+  return c;
+#else
+  return to_srgb(c);
+#endif
 }
 )";
 
@@ -90,11 +99,10 @@ out vec4 color;
 uniform vec3 eye;
 uniform vec3 emission;
 uniform float roughness, metallic, specular, transmission;
-uniform bool is_ground, flat_normals;
+uniform bool flat_normals;
 uniform bool upright_ground;          // the pattern follows world axes
 uniform float checker, ground_height, sweep, fade_start, fade_end;
 uniform vec3 checker_color, across, along;
-uniform int lamps, suns;
 uniform vec3 lamp_center[8], lamp_normal[8], lamp_radiance[8];
 uniform float lamp_area[8];
 uniform vec3 sun_towards[4], sun_irradiance[4];
@@ -107,17 +115,21 @@ uniform float shadow_offset[4];  // m along the normal: no surface shades itself
 const float kPi = 3.14159265;
 
 vec3 surface_color() {
-  if (!is_ground || checker <= 0.0) return base_color;
+#if CHECKER
   float x = dot(world_position, across), y = dot(world_position, along);
   if (!upright_ground && y > sweep) {
     float radius = 0.5 * sweep, rise = world_position.y - ground_height;
     y = rise < radius ? sweep + radius * atan(y - sweep, radius - rise) : sweep + radius * 0.5 * kPi + (rise - radius);
   }
   return mod(floor(x / checker) + floor(y / checker), 2.0) == 1.0 ? checker_color : base_color;
+#else
+  return base_color;
+#endif
 }
 
 vec3 reflectance(vec3 f0, float cosine) {
-  return f0 + (max(vec3(1.0 - roughness), f0) - f0) * pow(1.0 - cosine, 5.0);
+  float rest = 1.0 - cosine;
+  return f0 + (max(vec3(1.0 - roughness), f0) - f0) * (rest * rest * rest * rest * rest);
 }
 
 // GGX highlight times pi, with the visibility of Karis 2013.
@@ -128,19 +140,21 @@ float highlight(vec3 n, vec3 v, vec3 l, float alpha) {
   return a2 / (t * t) * 0.25 / ((nv * (1.0 - k) + k) * (nl * (1.0 - k) + k));
 }
 
-// Share of a light that reaches the surface: 12 taps in a spiral of equal areas (Vogel).
+// Share of a light that reaches the surface: four taps around it, each the mean of four texels.
 float reached(int layer, vec3 n) {
+#if SHADOWS == 0
+  return 1.0;
+#else
   if (layer < 0) return 1.0;
   vec4 seen = shadow_from_world[layer] * vec4(world_position + shadow_offset[layer] * n, 1.0);
   if (seen.w <= 0.0) return 1.0;
   vec3 at = 0.5 * seen.xyz / seen.w + 0.5;
   if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0))) || at.z <= 0.0) return 1.0;
-  float sum = 0.0;
-  for (int k = 0; k < 12; ++k) {
-    float radius = shadow_blur[layer] * sqrt((float(k) + 0.5) / 12.0), angle = 2.39996323 * float(k);
-    sum += texture(shadow_maps, vec4(at.xy + radius * vec2(cos(angle), sin(angle)), layer, min(at.z, 1.0)));
-  }
-  return sum / 12.0;
+  float z = min(at.z, 1.0);
+  vec2 r = vec2(shadow_blur[layer], 0.0);
+  return 0.25 * (texture(shadow_maps, vec4(at.xy + r.xy, layer, z)) + texture(shadow_maps, vec4(at.xy - r.xy, layer, z)) +
+                 texture(shadow_maps, vec4(at.xy + r.yx, layer, z)) + texture(shadow_maps, vec4(at.xy - r.yx, layer, z)));
+#endif
 }
 
 void main() {
@@ -153,7 +167,7 @@ void main() {
   float alpha = max(roughness * roughness, 0.01);
   vec3 sum = emission;
 
-  for (int k = 0; k < lamps; ++k) {
+  for (int k = 0; k < LAMPS; ++k) {
     vec3 to = lamp_center[k] - world_position;
     float squared = dot(to, to);
     vec3 l = to * inversesqrt(squared);
@@ -166,7 +180,7 @@ void main() {
     vec3 gloss = reflectance(f0, max(dot(v, normalize(v + l)), 0.0)) * highlight(n, v, l, widened) * mix(narrow, 1.0, 0.5);
     sum += reached(lamp_shadow[k], n) * irradiance / kPi * dot(n, l) * (diffuse + gloss);
   }
-  for (int k = 0; k < suns; ++k) {
+  for (int k = 0; k < SUNS; ++k) {
     vec3 l = sun_towards[k];
     if (dot(n, l) <= 0.0) continue;
     vec3 gloss = reflectance(f0, max(dot(v, normalize(v + l)), 0.0)) * highlight(n, v, l, alpha);
@@ -179,10 +193,9 @@ void main() {
   sum += reflectance(f0, max(dot(n, v), 0.0)) * environment(mix(r.y, 0.5 * n.y, roughness));
   sum = mix(sum, environment(mix(-v.y, r.y, 0.3)), 0.6 * transmission * (1.0 - metallic));
 
-  if (is_ground) {
-    float distance = length(world_position.xz);
-    sum = mix(sum, environment(-v.y), smoothstep(fade_start, fade_end, distance));
-  }
+#if GROUND
+  sum = mix(sum, environment(-v.y), smoothstep(fade_start, fade_end, length(world_position.xz)));
+#endif
   color = vec4(display(sum), 1.0);
 }
 )";
