@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,6 +26,7 @@ namespace {
 
 constexpr int kAntiAliasing = 4;  ///< samples a pixel
 constexpr float kPi = 3.14159265f;
+constexpr float kVertexLitSize = 5;  ///< pixels: smaller triangles are lit at their vertices
 
 /// Clip coordinates: the camera's window fills the picture, depth from `near` to `far` metres.
 Eigen::Matrix4f clip_from_world(const CameraFrame& camera, float near, float far) {
@@ -89,12 +91,42 @@ float seen_area(const AreaLight& lamp) {
   return kPi * lamp.u.squaredNorm();
 }
 
+/// Root of the mean area of a mesh's triangles as pixels at its mean distance, face on.
+float triangle_size(const MotionMesh& mesh, const CameraFrame& camera, int width) {
+  const std::vector<Vec3f>& positions = mesh.times.back().positions;
+  double area = 0, depth = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3f &a = positions[static_cast<std::size_t>(t[0])], &b = positions[static_cast<std::size_t>(t[1])],
+                &c = positions[static_cast<std::size_t>(t[2])];
+    area += 0.5 * static_cast<double>((b - a).cross(c - a).norm());
+    depth += static_cast<double>((a - camera.position).dot(camera.forward));
+  }
+  const double count = std::max<double>(1, static_cast<double>(mesh.triangles.size()));
+  if (!(depth > 0)) return std::numeric_limits<float>::infinity();  // around the camera
+  const double pixels_per_meter = 0.5 * width / (static_cast<double>(camera.half_width) * depth / count);
+  return static_cast<float>(std::sqrt(area / count) * pixels_per_meter);
+}
+
 /// More lights than the shader has room for: the first ones, which a shot lists by importance.
 int lamps_of(const Scene& scene) {
   return std::min(static_cast<int>(scene.area_lights.size()), kMaxPreviewLamps);
 }
 int suns_of(const Scene& scene) {
   return std::min(static_cast<int>(scene.suns.size()), kMaxPreviewSuns);
+}
+
+/// The sum of what the lights send, for the shaders.
+std::string lights_text(const Scene& scene, const std::vector<ShadowView>& shadows) {
+  std::string text = "vec3(0.0)";
+  const auto add = [&](bool is_sun, int light) {
+    int layer = -1;
+    for (std::size_t k = 0; k < shadows.size(); ++k)
+      if (shadows[k].is_sun == is_sun && shadows[k].light == light) layer = static_cast<int>(k);
+    text += fmt::format(" + {}({}, {}, skin)", is_sun ? "from_sun" : "from_lamp", light, layer);
+  };
+  for (int k = 0; k < lamps_of(scene); ++k) add(false, k);
+  for (int k = 0; k < suns_of(scene); ++k) add(true, k);
+  return text;
 }
 
 /// The first lines of a fragment shader.
@@ -122,8 +154,9 @@ class EglPreview : public Preview {
   }
 
  private:
-  const GlProgram& program(const char* vertex, const std::string& defines, const char* fragment);
-  const GlProgram& surface_program(const Scene& scene, const Ground* ground, ViewTransform view, std::size_t shadows);
+  const GlProgram& program(const std::string& vertex, const std::string& fragment);
+  const GlProgram& surface_program(const Scene& scene, const Ground* ground, ViewTransform view,
+                                   const std::vector<ShadowView>& shadows, bool at_vertices);
   void upload(const Scene& scene, const MotionMesh& ground);
   void draw_shadows(const std::vector<ShadowView>& views) const;
   void set_common(const GlProgram& program, const Environment& gradient, float exposure) const;
@@ -136,7 +169,7 @@ class EglPreview : public Preview {
   void draw_marks(const std::vector<OverlayVertex>& triangles) const;
 
   EglContext context_;
-  std::map<std::string, GlProgram> programs_;  ///< by their fragment shader's text
+  std::map<std::string, GlProgram> programs_;  ///< by the text of their shaders
   std::unique_ptr<GlProgram> plain_, overlay_;
   std::unique_ptr<ShadowLayers> shadows_;
   std::unique_ptr<GpuMarks> marks_;
@@ -147,21 +180,26 @@ class EglPreview : public Preview {
 };
 
 /// Made when it is first asked for.
-const GlProgram& EglPreview::program(const char* vertex, const std::string& defines, const char* fragment) {
-  const std::string text = defines + kEnvironmentFunctions + kDisplayFunctions + fragment;
-  return programs_.try_emplace(text, vertex, text).first->second;
+const GlProgram& EglPreview::program(const std::string& vertex, const std::string& fragment) {
+  return programs_.try_emplace(vertex + fragment, vertex, fragment).first->second;
 }
 
 /// ground: null for bodies.
 const GlProgram& EglPreview::surface_program(const Scene& scene, const Ground* ground, ViewTransform view,
-                                             std::size_t shadows) {
+                                             const std::vector<ShadowView>& shadows, bool at_vertices) {
   const bool checker = ground != nullptr && ground->checker > 0;
-  return program(
-      kSurfaceVertexShader,
-      head(view) + fmt::format("#define GROUND {}\n#define CHECKER {}\n#define LAMPS {}\n#define SUNS {}\n"
-                               "#define SHADOWS {}\n",
-                               ground != nullptr ? 1 : 0, checker ? 1 : 0, lamps_of(scene), suns_of(scene), shadows),
-      kSurfaceFragmentShader);
+  const std::string begin =
+      head(view) + fmt::format(
+                       "#define GROUND {}\n#define CHECKER {}\n#define SHADOWS {}\n#define LIGHTS(skin) {}\n"
+                       "#define AT_VERTICES {}\n#define SHADOW_BLUR {}\n",
+                       ground != nullptr ? 1 : 0, checker ? 1 : 0, shadows.size(), lights_text(scene, shadows),
+                       at_vertices ? 1 : 0, at_vertices ? "5.0" : "1.0");
+  const std::string functions = std::string(kEnvironmentFunctions) + kDisplayFunctions + kSurfaceFunctions;
+  if (at_vertices)
+    return program(begin + kSurfaceAttributes + kVertexLitInputs + functions + kVertexLitMain,
+                   kVertexLitFragmentShader);
+  return program(begin + kSurfaceAttributes + kPixelLitVertexShader,
+                 begin + kPixelLitInputs + functions + kPixelLitMain);
 }
 
 void EglPreview::upload(const Scene& scene, const MotionMesh& ground) {
@@ -212,14 +250,11 @@ void EglPreview::set_lights(const GlProgram& surface, const Scene& scene) const 
 }
 
 void EglPreview::set_shadows(const GlProgram& surface, const std::vector<ShadowView>& views) const {
-  for (int k = 0; k < kMaxPreviewLamps; ++k) surface.set("lamp_shadow", k, -1);
-  for (int k = 0; k < kMaxPreviewSuns; ++k) surface.set("sun_shadow", k, -1);
+  surface.set("shadow_share", 1.0f / kShadowSize);
   for (std::size_t layer = 0; layer < views.size(); ++layer) {
     const ShadowView& view = views[layer];
     const int k = static_cast<int>(layer);
-    surface.set(view.is_sun ? "sun_shadow" : "lamp_shadow", view.light, k);
-    surface.set("shadow_blur", k, view.blur);
-    surface.set("shadow_offset", k, view.offset);
+    surface.set("shadow_texel", k, view.texel);
     glUniformMatrix4fv(surface.at(fmt::format("shadow_from_world[{}]", k).c_str()), 1, GL_FALSE,
                        view.clip_from_world.data());
   }
@@ -311,8 +346,8 @@ DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTra
   const Environment gradient = as_gradient(scene.environment);
   const float far = farthest(scene.meshes, ground, style.marks, camera);
   const Eigen::Matrix4f clip = clip_from_world(camera, 1e-3f * far, far);
-  const auto surface = [&](const Ground* of) -> const GlProgram& {
-    const GlProgram& program = surface_program(scene, of, view, shadows.size());
+  const auto surface = [&](const Ground* of, bool at_vertices) -> const GlProgram& {
+    const GlProgram& program = surface_program(scene, of, view, shadows, at_vertices);
     set_common(program, gradient, exposure);
     set_lights(program, scene);
     set_shadows(program, shadows);
@@ -322,18 +357,20 @@ DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTra
   };
   glEnable(GL_DEPTH_TEST);
   // From near to far: what is hidden costs nothing.
-  const GlProgram& skin = surface(nullptr);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const float pixels = triangle_size(scene.meshes[b], camera, width);
+    const GlProgram& skin = surface(nullptr, pixels < kVertexLitSize && !scene.meshes[b].times.back().normals.empty());
     set_appearance(skin, scene.meshes[b]);
     bodies_[b].draw();
   }
   if (scene.ground) {
-    const GlProgram& floor = surface(&*scene.ground);
+    const GlProgram& floor = surface(&*scene.ground, false);
     set_ground(floor, *scene.ground, scene.camera);
     set_appearance(floor, ground);
     ground_->draw();
   }
-  const GlProgram& background = program(kBackgroundVertexShader, head(view), kBackgroundFragmentShader);
+  const GlProgram& background = program(
+      kBackgroundVertexShader, head(view) + kEnvironmentFunctions + kDisplayFunctions + kBackgroundFragmentShader);
   set_common(background, gradient, exposure);
   draw_background(background, camera);
   if (style.wireframe) draw_edges(clip);

@@ -33,21 +33,13 @@ Eigen::Matrix4f view_from(const Vec3f& eye, const Vec3f& forward) {
   return view;
 }
 
-/// How far the edge of a shadow is blurred: for what lies about a radius behind its caster, within what 12 taps can
-/// carry without bands.
-float blur_of(float light_angle, int size) {
-  const float least = 1.2f / static_cast<float>(size), most = 0.015f;
-  return std::clamp(0.25f * light_angle, least, most);
-}
-
 ShadowView sun_view(const SunLight& sun, const Ball& ball, int size) {
   ShadowView view;
   view.is_sun = true;
   Eigen::Matrix4f scale = Eigen::Matrix4f::Identity();
   scale.diagonal().head<3>().setConstant(1 / ball.radius);
   view.clip_from_world = scale * view_from(ball.center, sun.direction.normalized());
-  view.blur = blur_of(sun.angular_diameter, size);
-  view.offset = 2 * ball.radius * (1.5f / static_cast<float>(size) + view.blur);
+  view.texel = 2 * ball.radius / static_cast<float>(size);
   return view;
 }
 
@@ -63,8 +55,7 @@ ShadowView lamp_view(const AreaLight& lamp, const Ball& ball, int size) {
   project(2, 3) = -2 * far * near / (far - near);
   project(3, 2) = 1;
   view.clip_from_world = project * view_from(lamp.center, to / distance);
-  view.blur = blur_of(2 * std::max(lamp.u.norm(), lamp.v.norm()) / distance, size);
-  view.offset = 2 * slope * distance * (1.5f / static_cast<float>(size) + view.blur);
+  view.texel = 2 * slope * distance / static_cast<float>(size);
   return view;
 }
 

@@ -13,9 +13,8 @@ namespace softreel {
 struct ShadowView {
   Eigen::Matrix4f clip_from_world;
   bool is_sun = false;
-  int light = 0;     ///< index in scene.suns or scene.area_lights
-  float blur = 0;    ///< radius of the soft edge, share of the map
-  float offset = 0;  ///< m: what lies nearer to a caster than this may be its own surface
+  int light = 0;    ///< index in scene.suns or scene.area_lights
+  float texel = 0;  ///< m, edge of a pixel of the map where the bodies are
 };
 
 /// One for each light that can cast a shadow, suns first, then lamps, each in the order of the shot; `most` of them.

@@ -301,5 +301,34 @@ TEST(EglPreview, WireframeDarkensEdgesAndLeavesTheRest) {
   EXPECT_GE(on_diagonal, 16);
 }
 
+TEST(EglPreview, FineTrianglesLookAsCoarseOnesDo) {
+  std::string reason;
+  const std::unique_ptr<Preview> preview = egl_preview_or_null(reason);
+  if (preview == nullptr) GTEST_SKIP() << reason;
+  const auto draw = [&](int rows) {
+    Scene scene = scene_in_sky(0.2f);
+    Appearance skin = matte(0.5f);
+    skin.roughness = 0.5f;
+    scene.meshes = {sphere(Vec3f(0, 0.5f, 0), 0.5f, skin, rows)};
+    scene.camera.position = Vec3f(0.5f, 1, 3);
+    scene.camera.target = Vec3f(0, 0.5f, 0);
+    scene.suns.resize(1);
+    scene.suns[0].direction = Vec3f(-1, -0.4f, -1).normalized();
+    scene.suns[0].irradiance = Vec3f::Constant(3);
+    return preview->draw(scene, 320, 240, ViewTransform::Standard, 0);
+  };
+  // Triangles of about 11 pixels, lit at pixels; and of about 1.6 pixels, lit at vertices.
+  const DisplayImage coarse = draw(24), fine = draw(160);
+  double sum = 0;
+  int body = 0;
+  for (std::size_t k = 0; k < fine.pixels.size(); k += 3) {
+    const int difference = std::abs(fine.pixels[k] - coarse.pixels[k]);
+    sum += difference;
+    body += fine.pixels[k] > 140 ? 1 : 0;
+  }
+  EXPECT_GT(body, 2000) << "the sun lights it";
+  EXPECT_LT(sum / (320 * 240), 1);
+}
+
 }  // namespace
 }  // namespace softreel
