@@ -5,15 +5,27 @@
 #include <string>
 
 #include "render/image/image_io.h"
+#include "render/preview/gizmo_marks.h"
 #include "render/scene/scene.h"
 
 namespace softreel {
 
+struct PreviewStyle {
+  bool fast = false;       ///< lit only: no shadows, no anti-aliasing
+  bool wireframe = false;  ///< the edges of the bodies' triangles over them
+  GizmoMarks marks;        ///< whole where they are seen, faint behind bodies
+};
+
 class Preview {
  public:
   virtual ~Preview() = default;
-  /// The scene at the closing of the shutter, seen by the same camera, lit by its lights without shadows.
-  virtual DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure) = 0;
+  /// The scene at the closing of the shutter, seen by the same camera, lit by its lights; the first four that can cast
+  /// shadows of the bodies do. Bodies have the colours of their vertices or their heat, but no textures.
+  virtual DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure,
+                            const PreviewStyle& style) = 0;
+  DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure) {
+    return draw(scene, width, height, view, exposure, {});
+  }
   /// "EGL 1.5, Mesa llvmpipe ..." for the report.
   virtual std::string description() const = 0;
 };

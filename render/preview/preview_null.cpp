@@ -8,7 +8,8 @@ namespace {
 
 class NullPreview : public Preview {
  public:
-  DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure) override {
+  DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure,
+                    const PreviewStyle&) override {
     CHECK(width > 0);
     CHECK(height > 0);
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

@@ -95,6 +95,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
 struct Parsed {
   ShotOptions shot;
   ExportOptions exporting;
+  PreviewOptions preview;
   SheetCommandOptions sheet;
   int turntable = 0;
   GoldenOptions golden;
@@ -108,6 +109,28 @@ struct Parsed {
 };
 
 using Runner = std::function<int()>;
+
+void add_preview_command(CLI::App& app, Parsed& parsed, Runner& run) {
+  CLI::App* preview = app.add_subcommand(
+      "preview",
+      "draw quick lit frames and their movie with EGL, without path tracing: SHOT.preview.####.png and .mp4");
+  PreviewOptions& options = parsed.preview;
+  add_shot_options(*preview, options.shot);
+  preview->add_option("--mode", options.mode, "shadows: with shadows and 4 samples a pixel; fast: lit only [shadows]")
+      ->check(CLI::IsMember({"shadows", "fast"}))
+      ->group("Picture");
+  preview
+      ->add_option("--gizmos", options.gizmos,
+                   "marks of what holds the bodies at each frame, with commas between: pins (pink), pulls (blue, "
+                   "with lines to their targets), regions (green); all; none [pins,pulls]")
+      ->option_text("LIST")
+      ->delimiter(',')
+      ->expected(1)
+      ->check(CLI::IsMember({"pins", "pulls", "regions", "all", "none"}))
+      ->group("Picture");
+  preview->add_flag("--wireframe", options.wireframe, "draw the edges of the bodies' triangles")->group("Picture");
+  preview->callback([&] { run = [&parsed] { return run_preview(parsed.preview); }; });
+}
 
 void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   CLI::App* render = app.add_subcommand("render", "simulate a shot and trace its pictures and movie");
@@ -147,9 +170,7 @@ void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   exporting->add_option("--space", parsed.exporting.space, "object (the file's own) | world [object]")->group("Files");
   exporting->callback([&] { run = [&parsed] { return run_export(parsed.exporting); }; });
 
-  CLI::App* preview = app.add_subcommand("preview", "draw quick lit frames with EGL, without path tracing");
-  add_shot_options(*preview, parsed.shot);
-  preview->callback([&] { run = [&parsed] { return run_preview(parsed.shot); }; });
+  add_preview_command(app, parsed, run);
 
   CLI::App* golden = app.add_subcommand(
       "golden", "render shots at test quality and compare them with golden images; status 1 on change");

@@ -39,8 +39,15 @@ struct ExportOptions {
 /// Writes the deformed surfaces in the vertex order of their files.
 int run_export(const ExportOptions& options);
 
-/// Draws frames by rasterisation, without path tracing.
-int run_preview(const ShotOptions& options);
+struct PreviewOptions {
+  ShotOptions shot;
+  std::string mode = "shadows";  ///< fast | shadows
+  bool wireframe = false;
+  std::vector<std::string> gizmos = {"pins", "pulls"};  ///< of pins, pulls, regions; or all, or none
+};
+
+/// Draws frames by rasterisation, without path tracing, and a movie of all of the shot's.
+int run_preview(const PreviewOptions& options);
 
 struct GoldenOptions {
   ShotOptions shot;                ///< its `shot` is not used

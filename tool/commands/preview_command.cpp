@@ -1,11 +1,17 @@
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
 #include <fmt/format.h>
 
+#include "core/base/error.h"
+#include "render/image/burn_in.h"
 #include "render/preview/preview.h"
 #include "tool/commands/commands.h"
+#include "tool/stages/gizmos.h"
+#include "tool/stages/movie_stage.h"
 #include "tool/stages/outputs.h"
+#include "tool/stages/picture_stage.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
 #include "tool/stages/simulate_key.h"
@@ -14,53 +20,109 @@ namespace softreel {
 
 namespace {
 
-StageKey preview_key(const Shot& shot, const StageKey& look) {
-  return KeyHasher("preview 3").add(look).add(shot.output.view).add(shot.output.exposure).key();
+GizmoKinds gizmo_kinds(const std::vector<std::string>& names) {
+  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  if (has("none") && names.size() > 1)
+    throw input_error(
+        "--gizmos: none stands beside other kinds.\n  Accepted: none alone, all, or a list of pins, pulls, regions.");
+  return {has("all") || has("pins"), has("all") || has("pulls"), has("all") || has("regions")};
 }
+
+/// The frames of one playblast on their way to files.
+class Playblast {
+ public:
+  Playblast(Session& session, ShotRun& run, Outputs& outputs, const PreviewOptions& options)
+      : session_(session),
+        run_(run),
+        outputs_(outputs),
+        scenes_(run),
+        gizmos_(run, gizmo_kinds(options.gizmos)),
+        fast_(options.mode == "fast"),
+        wireframe_(options.wireframe) {}
+
+  /// Writes the picture of a frame unless it is there. True if it was drawn.
+  bool make(int frame) {
+    const std::string path = outputs_.frame_path(frame, "png");
+    const StageKey key = file_key(frame);
+    if (outputs_.is_done(path, key)) {
+      saved_seconds_ += outputs_.entry(path)->seconds;
+      return false;
+    }
+    if (!preview_) {
+      preview_ = make_egl_preview();
+      session_.console().info("preview on " + preview_->description());
+    }
+    const std::vector<SkinnedBody> bodies = run_.skin(frame, still_request(run_.shot().render));
+    const Scene scene = scenes_.at(frame, bodies);
+    const auto start = std::chrono::steady_clock::now();
+    const Bytes png = encode_png(draw(frame, scene, gizmos_.at(frame, bodies)));
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    outputs_.write(path, key, png, seconds.count());
+    return true;
+  }
+  double saved_seconds() const { return saved_seconds_; }
+
+ private:
+  StageKey file_key(int frame) const {
+    const OutputSettings& output = run_.shot().output;
+    KeyHasher key("preview 5");
+    key.add(scenes_.preview_key(frame)).add(output.view).add(output.exposure).add(fast_).add(wireframe_);
+    gizmos_.add_key(key, frame);
+    if (output.burn_in) {
+      const BurnIn words = frame_words(run_.shot().settings, frame);
+      key.add(words.left).add(words.right);
+    }
+    return key.key();
+  }
+  DisplayImage draw(int frame, const Scene& scene, GizmoMarks marks) {
+    const Shot& shot = run_.shot();
+    const ScopedStage stage(session_.context().times, "preview");
+    DisplayImage picture =
+        preview_->draw(scene, shot.render.params.width, shot.render.params.height, shot.output.view,
+                       static_cast<float>(shot.output.exposure), {fast_, wireframe_, std::move(marks)});
+    scenes_.draw_legend(picture);
+    if (shot.output.burn_in) burn_in(picture, frame_words(shot.settings, frame));
+    return picture;
+  }
+
+  Session& session_;
+  ShotRun& run_;
+  Outputs& outputs_;
+  SceneStage scenes_;
+  Gizmos gizmos_;
+  bool fast_, wireframe_;
+  std::unique_ptr<Preview> preview_;  ///< made when the first frame has to be drawn
+  double saved_seconds_ = 0;
+};
 
 }  // namespace
 
-int run_preview(const ShotOptions& options) {
-  if (options.dry_run) return run_plan(options);
-  Session session(options);
+int run_preview(const PreviewOptions& options) {
+  if (options.shot.dry_run) return run_plan(options.shot);
+  Session session(options.shot);
   const Shot& shot = session.shot();
   const FrameSpan frames = session.frames();
   Outputs outputs(shot.output.directory, shot.settings.name + ".preview", session.context().log);
   ShotRun run(shot, session.context());
   session.prepare(outputs, run);
-  SceneStage scenes(run);
-  std::unique_ptr<Preview> preview;  // made when the first frame has to be drawn
+  Playblast playblast(session, run, outputs, options);
   int written = 0;
-  double saved = 0;
   session.console().begin("frames", frames.count());
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     session.context().stop_if_cancelled();
-    const std::string path = outputs.frame_path(frame, "png");
-    const StageKey key = preview_key(shot, scenes.preview_key(frame));
-    if (outputs.is_done(path, key)) {
-      saved += outputs.entry(path)->seconds;
-      session.console().advance(frame - frames.first + 1, fmt::format("frame {} there already", frame));
-      continue;
-    }
-    if (!preview) {
-      preview = make_egl_preview();
-      session.console().info("preview on " + preview->description());
-    }
-    const Scene scene = scenes.at(frame, run.skin(frame, still_request(run.shot().render)));
-    const auto start = std::chrono::steady_clock::now();
-    const ScopedStage stage(session.context().times, "preview");
-    const DisplayImage picture = preview->draw(scene, shot.render.params.width, shot.render.params.height,
-                                               shot.output.view, static_cast<float>(shot.output.exposure));
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    outputs.write(path, key, encode_png(picture), seconds.count());
-    ++written;
-    session.console().advance(frame - frames.first + 1, fmt::format("frame {}", frame));
+    const bool drawn = playblast.make(frame);
+    written += drawn ? 1 : 0;
+    session.console().advance(frame - frames.first + 1,
+                              fmt::format("frame {}{}", frame, drawn ? "" : " there already"));
   }
   RunReport report = session.report("preview", run);
   report.files_written = written;
   report.files_kept = frames.count() - written;
-  report.files_saved_seconds = saved;
+  report.files_saved_seconds = playblast.saved_seconds();
   report.made.push_back(outputs.frame_path(frames.first, "png") + " .. " + outputs.frame_path(frames.last, "png"));
+  const bool whole = frames.first == shot.settings.first_frame && frames.last == shot.settings.last_frame;
+  if (shot.output.movie && whole && frames.count() > 1)
+    report.made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
   session.finish(report);
   return 0;
 }

@@ -1,0 +1,148 @@
+/// What the preview shows beside the bodies, through the built program.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "render/image/image_io.h"
+#include "tests/support/program.h"
+
+namespace softreel {
+namespace {
+
+using namespace softreel::testing;
+using nlohmann::json;
+
+class PreviewCommand : public ::testing::Test {
+ protected:
+  /// Skips where there is no EGL.
+  void start(const std::string& name) {
+    folder_ = shot_folder("preview_" + name);
+    const Outcome outcome = preview("--frames 1");
+    if (outcome.status != 0) GTEST_SKIP() << outcome.err;
+  }
+  Outcome preview(const std::string& options) const {
+    return run(
+        fmt::format("softreel preview {0}/shot.toml --output {0}/out --json --quiet --set render.width=320 --set "
+                    "render.height=180 {1}",
+                    folder_, options));
+  }
+  int written(const std::string& options) const {
+    const Outcome outcome = preview(options);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.status == 0 ? json::parse(outcome.out)["files"]["written"].get<int>() : -1;
+  }
+  DisplayImage picture(int frame) const {
+    return read_png(fmt::format("{}/out/ball.preview.{:04}.png", folder_, frame));
+  }
+
+  std::string folder_;
+};
+
+struct Marks {
+  int pink = 0, blue = 0;
+};
+
+/// Pixels of the colours of pins and of pulls; the shot has no others like them.
+Marks marks_in(const DisplayImage& image) {
+  Marks marks;
+  for (std::size_t k = 0; k < image.pixels.size(); k += 3) {
+    const int r = image.pixels[k], g = image.pixels[k + 1], b = image.pixels[k + 2];
+    marks.pink += r > g + 130 && b > g + 50 ? 1 : 0;
+    marks.blue += b > r + 150 && g > r + 60 ? 1 : 0;
+  }
+  return marks;
+}
+
+TEST_F(PreviewCommand, MarksAreThereWhileTheirConstraintIsActive) {
+  start("active");
+  if (IsSkipped()) return;
+  const std::string keyed =
+      "--set 'body.ball.pin[0].active=[[1,2]]' --set "
+      "'body.ball.pull[0].stiffness=[{frame=2,value=0,ease=\"constant\"},{frame=3,value=500}]' ";
+  ASSERT_EQ(written(keyed), 4);
+  const Marks first = marks_in(picture(1)), last = marks_in(picture(4));
+  EXPECT_GT(first.pink, 20);
+  EXPECT_EQ(first.blue, 0) << "a pull without stiffness";
+  EXPECT_EQ(last.pink, 0) << "a pin that has ended";
+  EXPECT_GT(last.blue, 20);
+  ASSERT_EQ(written(keyed + "--gizmos pins"), 4);
+  EXPECT_EQ(marks_in(picture(4)).blue, 0);
+  EXPECT_GT(marks_in(picture(1)).pink, 20);
+  ASSERT_EQ(written(keyed + "--gizmos none"), 4);
+  EXPECT_EQ(marks_in(picture(1)).pink, 0);
+}
+
+TEST_F(PreviewCommand, IsDrawnAgainOnlyInAnotherStyle) {
+  start("again");
+  if (IsSkipped()) return;
+  EXPECT_EQ(written("--frames 1-2"), 1) << "the first was there";
+  EXPECT_EQ(written("--frames 1-2"), 0);
+  EXPECT_EQ(written("--frames 1-2 --mode fast"), 2);
+  EXPECT_EQ(written("--frames 1-2 --mode fast --wireframe"), 2);
+  EXPECT_EQ(written("--frames 1-2 --mode fast --wireframe --gizmos pins"), 2);
+  EXPECT_EQ(written("--frames 1-2 --mode fast --wireframe --gizmos pins --set output.burn_in=true"), 2);
+  EXPECT_EQ(written("--frames 1-2 --mode fast --wireframe --gizmos pins --set output.burn_in=true"), 0);
+}
+
+TEST_F(PreviewCommand, HeatHasTheLegendOfTheRenderedPicture) {
+  start("heat");
+  if (IsSkipped()) return;
+  const std::string heat = "--frames 3 --set render.heat=strain --set 'render.heat_range=[0,0.2]' ";
+  ASSERT_EQ(written(heat + "--gizmos none"), 1);
+  ASSERT_EQ(run(fmt::format("softreel render {0}/shot.toml --output {0}/out --quiet --set render.width=320 --set "
+                            "render.height=180 {1}",
+                            folder_, heat))
+                .status,
+            0);
+  const DisplayImage drawn = picture(3), traced = read_png(folder_ + "/out/ball.0003.png");
+  // The coloured bar of the legend: no light falls on it, so its pixels are the same.
+  int equal_and_coloured = 0;
+  for (std::size_t y = 0; y < 40; ++y)
+    for (std::size_t x = 0; x < 140; ++x) {
+      const std::size_t k = 3 * (320 * y + x);
+      const auto [low, high] = std::minmax({drawn.pixels[k], drawn.pixels[k + 1], drawn.pixels[k + 2]});
+      if (high - low > 90 && std::equal(&drawn.pixels[k], &drawn.pixels[k] + 3, &traced.pixels[k]))
+        ++equal_and_coloured;
+    }
+  EXPECT_GT(equal_and_coloured, 150);
+}
+
+TEST_F(PreviewCommand, BurnsInAtTheLowerEdgeOnly) {
+  start("burn_in");
+  if (IsSkipped()) return;
+  const DisplayImage plain = picture(1);
+  ASSERT_EQ(written("--frames 1 --set output.burn_in=true"), 1);
+  const DisplayImage burned = picture(1);
+  const std::size_t upper = plain.pixels.size() * 3 / 4;
+  EXPECT_TRUE(std::equal(plain.pixels.begin(), plain.pixels.begin() + static_cast<std::ptrdiff_t>(upper),
+                         burned.pixels.begin()));
+  EXPECT_NE(plain.pixels, burned.pixels);
+}
+
+TEST_F(PreviewCommand, AllFramesMakeAMovie) {
+  start("movie");
+  if (IsSkipped()) return;
+  const Outcome some = preview("--frames 1-3 --set output.movie=true");
+  EXPECT_EQ(some.status, 0) << some.err;
+  EXPECT_FALSE(exists(folder_ + "/out/ball.preview.mp4"));
+  const Outcome all = preview("--set output.movie=true");
+  if (all.status != 0) {
+    EXPECT_NE(all.err.find("ffmpeg"), std::string::npos) << all.err;
+    GTEST_SKIP() << all.err;
+  }
+  EXPECT_TRUE(exists(folder_ + "/out/ball.preview.mp4"));
+}
+
+TEST_F(PreviewCommand, RefusesKindsAndModesThatItDoesNotKnow) {
+  folder_ = shot_folder("preview_refuses");
+  for (const char* options : {"--gizmos none,pins", "--gizmos springs", "--mode nice"}) {
+    const Outcome outcome = preview(options);
+    EXPECT_EQ(outcome.status, 2) << options;
+    EXPECT_NE(outcome.err.find(std::string(options).substr(2, 4)), std::string::npos) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace softreel
