@@ -179,7 +179,7 @@ float reached(int layer, vec3 n) {
   return 1.0;
 #else
   if (layer < 0) return 1.0;
-  float offset = (1.5 + SHADOW_BLUR) * shadow_texel[layer];  // along the normal, so that no surface shades itself
+  float offset = (2.5 + SHADOW_BLUR) * shadow_texel[layer];  // along the normal, so that no surface shades itself
   vec4 seen = shadow_from_world[layer] * vec4(world_position + offset * n, 1.0);
   if (seen.w <= 0.0) return 1.0;
   vec3 at = 0.5 * seen.xyz / seen.w + 0.5;
@@ -227,7 +227,9 @@ vec3 seen_radiance() {
   vec3 albedo = surface_color();
   vec3 v = normalize(eye - world_position);
   vec3 n = normalize(flat_normals ? FACE_NORMAL : world_normal);
-  if (dot(n, v) < 0.0) n = -n;
+  // The back of a sheet; or a front whose smooth normal points a little away, as near outlines.
+  float side = dot(n, v);
+  n = side < -0.3 ? -n : normalize(n - min(side, 0.0) * v);
   vec3 f0 = mix(vec3(0.08 * specular), albedo, metallic);
   vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - 0.6 * transmission);
   Skin skin = Skin(n, v, f0, diffuse, max(roughness * roughness, 0.01));

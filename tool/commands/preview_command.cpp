@@ -65,7 +65,7 @@ class Playblast {
  private:
   StageKey file_key(int frame) const {
     const OutputSettings& output = run_.shot().output;
-    KeyHasher key("preview 5");
+    KeyHasher key("preview 6");
     key.add(scenes_.preview_key(frame)).add(output.view).add(output.exposure).add(fast_).add(wireframe_);
     gizmos_.add_key(key, frame);
     if (output.burn_in) {
