@@ -21,7 +21,7 @@ FENCES = [
     (r"<assimp/", r"core/mesh/readers/assimp_reader\.cpp$"),
     (r"<(tbb|oneapi)/", r"core/base/parallel\.(h|cpp)$"),
     (r"<embree3/", r"render/pathtrace/ray_scene_embree\.cpp$"),
-    (r"<(EGL|GL|epoxy)/", r"render/preview/(preview_egl\.cpp|egl/[a-z_]+\.h)$"),
+    (r"<(EGL|GL|epoxy)/", r"render/preview/egl/[a-z_]+\.(cpp|h)$"),
     (r"<(Imf|Imath|OpenEXR|png\.h|stb)", r"render/image/image_io\.cpp$"),
     (r"<(toml\+\+|nlohmann|CLI)/", r"^(tool|tests/tool)/"),
     (r"<(petsc|cholmod|Eigen/CholmodSupport)", r"^tests/benchmark/rivals/"),

@@ -7,6 +7,26 @@
 
 namespace softreel {
 
+bool FlatLamp::meets_plane(const Vec3f& origin, const Vec3f& direction, float max_distance, float& distance,
+                           Vec3f& place) const {
+  const float cosine = -direction.dot(normal);
+  if (cosine <= 0) return false;
+  const Vec3f d = center - origin;
+  const float t = -d.dot(normal) / cosine;
+  if (!(t > 0 && t < max_distance)) return false;
+  place = t * direction - d;
+  distance = t;
+  return true;
+}
+
+float FlatLamp::importance(const Vec3f& p, float luminance) const {
+  const Vec3f d = p - center;
+  const float height = d.dot(normal);
+  if (height <= 0) return 0;
+  const float squared = d.squaredNorm() + squared_radius;
+  return luminance * area * (height + 0.1f * std::sqrt(squared_radius)) / (squared * std::sqrt(squared));
+}
+
 RectangleLight::RectangleLight(const AreaLight& light)
     : center_(light.center),
       half_x_(light.u.norm()),
@@ -85,23 +105,16 @@ float RectangleLight::pdf(const Vec3f& origin, const Vec3f& direction, float dis
 }
 
 bool RectangleLight::intersect(const Vec3f& origin, const Vec3f& direction, float max_distance, float& distance) const {
-  const float cosine = -direction.dot(normal_);
-  if (cosine <= 0) return false;
-  const Vec3f d = center_ - origin;
-  const float t = -d.dot(normal_) / cosine;
-  if (!(t > 0 && t < max_distance)) return false;
-  const Vec3f at = t * direction - d;
+  Vec3f at;
+  float t = 0;
+  if (!flat().meets_plane(origin, direction, max_distance, t, at)) return false;
   if (std::abs(at.dot(x_)) > half_x_ || std::abs(at.dot(y_)) > half_y_) return false;
   distance = t;
   return true;
 }
 
 float RectangleLight::importance(const Vec3f& p) const {
-  const Vec3f d = p - center_;
-  const float height = d.dot(normal_);
-  if (height <= 0) return 0;
-  const float squared = d.squaredNorm() + radius2_;
-  return luminance_ * area_ * (height + 0.1f * std::sqrt(radius2_)) / (squared * std::sqrt(squared));
+  return flat().importance(p, luminance_);
 }
 
 bool RectangleLight::below(const Vec3f& p, const Vec3f& normal) const {

@@ -13,6 +13,18 @@ struct LightSample {
   float pdf = 0;  ///< by solid angle; 0: a direction that only this light can find (a point-like sun)
 };
 
+/// What flat lamps of any outline share. The radius is that of the sphere around the lamp.
+struct FlatLamp {
+  Vec3f center, normal;  ///< it emits to the side of the normal
+  float area = 0, squared_radius = 0;
+
+  /// Where a ray meets the lamp's plane from the emitting side before max_distance; place: from the centre.
+  bool meets_plane(const Vec3f& origin, const Vec3f& direction, float max_distance, float& distance,
+                   Vec3f& place) const;
+  /// Rough irradiance at p on a surface facing the lamp: 0 only if there is none.
+  float importance(const Vec3f& p, float luminance) const;
+};
+
 class RectangleLight {
  public:
   /// Throws input_error if the edges are not perpendicular or have no length.
@@ -40,6 +52,7 @@ class RectangleLight {
     float b0, b1, k, angle;    ///< as in the paper; angle: of the whole light, sr
   };
   Solid solid_from(const Vec3f& p) const;
+  FlatLamp flat() const { return {center_, normal_, area_, radius2_}; }
   bool is_far(const Vec3f& p) const { return (center_ - p).squaredNorm() > kFar * kFar * radius2_; }
 
   static constexpr float kFar = 4;  ///< distances over half diagonals; the density then varies by about a quarter

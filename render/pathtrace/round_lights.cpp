@@ -41,12 +41,9 @@ float DiskLight::pdf(const Vec3f& /*origin*/, const Vec3f& direction, float dist
 }
 
 bool DiskLight::intersect(const Vec3f& origin, const Vec3f& direction, float max_distance, float& distance) const {
-  const float cosine = -direction.dot(normal_);
-  if (cosine <= 0) return false;
-  const Vec3f d = center_ - origin;
-  const float t = -d.dot(normal_) / cosine;
-  if (!(t > 0 && t < max_distance)) return false;
-  const Vec3f at = t * direction - d;
+  Vec3f at;
+  float t = 0;
+  if (!flat().meets_plane(origin, direction, max_distance, t, at)) return false;
   const float x = at.dot(u_) / u_.squaredNorm(), y = at.dot(v_) / v_.squaredNorm();
   if (x * x + y * y > 1) return false;
   distance = t;
@@ -54,11 +51,7 @@ bool DiskLight::intersect(const Vec3f& origin, const Vec3f& direction, float max
 }
 
 float DiskLight::importance(const Vec3f& p) const {
-  const Vec3f d = p - center_;
-  const float height = d.dot(normal_);
-  if (height <= 0) return 0;
-  const float squared = d.squaredNorm() + radius2_;
-  return luminance_ * area_ * (height + 0.1f * std::sqrt(radius2_)) / (squared * std::sqrt(squared));
+  return flat().importance(p, luminance_);
 }
 
 bool DiskLight::below(const Vec3f& p, const Vec3f& normal) const {

@@ -22,6 +22,8 @@ class DiskLight {
   bool below(const Vec3f& p, const Vec3f& normal) const;
 
  private:
+  FlatLamp flat() const { return {center_, normal_, area_, radius2_}; }
+
   Vec3f center_, u_, v_, normal_;  ///< u_, v_: half axes
   float area_, radius2_;           ///< radius2_: of the sphere around it
   Vec3f radiance_;

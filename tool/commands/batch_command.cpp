@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "tool/commands/commands.h"
-#include "tool/report/json_text.h"
+#include "tool/stages/json_text.h"
 #include "tool/stages/process.h"
 
 namespace softreel {

@@ -14,8 +14,8 @@
 #include "core/tetmesh/tet_quality.h"
 #include "tool/commands/commands.h"
 #include "tool/report/cut_picture.h"
-#include "tool/report/json_text.h"
 #include "tool/report/surface_picture.h"
+#include "tool/stages/json_text.h"
 
 namespace softreel {
 namespace {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tool/commands/commands.h"
-#include "tool/report/json_text.h"
 #include "tool/stages/cache_use.h"
+#include "tool/stages/json_text.h"
 #include "tool/stages/shot_status.h"
 
 namespace softreel {

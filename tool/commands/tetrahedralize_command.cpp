@@ -17,9 +17,9 @@
 #include "core/tetmesh/tet_quality.h"
 #include "tool/commands/commands.h"
 #include "tool/report/cut_picture.h"
-#include "tool/report/json_text.h"
 #include "tool/shot/codecs.h"
 #include "tool/stages/atomic_file.h"
+#include "tool/stages/json_text.h"
 
 namespace softreel {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tool/report/console.h"
-#include "tool/report/json_text.h"
+#include "tool/stages/json_text.h"
 #include "tool/stages/stage_names.h"
 
 namespace softreel {

@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "tool/report/json_text.h"
 #include "tool/shot/shot_load.h"
 #include "tool/stages/atomic_file.h"
 #include "tool/stages/base64.h"
+#include "tool/stages/json_text.h"
 #include "tool/stages/settings_snapshot.h"
 
 namespace softreel {

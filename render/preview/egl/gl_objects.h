@@ -13,8 +13,8 @@
 
 #include "render/image/image_io.h"
 #include "render/preview/egl/egl_context.h"
+#include "render/preview/egl/preview_shaders.h"
 #include "render/preview/gizmo_marks.h"
-#include "render/preview/preview_shaders.h"
 #include "render/scene/scene.h"
 
 namespace softreel {

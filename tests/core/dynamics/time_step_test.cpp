@@ -304,13 +304,14 @@ TEST(TimeStep, GuessesSaveIterationsAndNoAccuracy) {
       without += plain.simulator.step(k / 4.0, 1.0 / 96).solve.iterations;
       ASSERT_TRUE(truth.simulator.step(k / 4.0, 1.0 / 96).ok());
       const std::vector<Vec3>& right = truth.simulator.state().positions;
-      guess_error = std::max(guess_error, distance(guessed.simulator.state().positions, right));
-      plain_error = std::max(plain_error, distance(plain.simulator.state().positions, right));
+      // Root mean squares over the steps: the worst single step is a matter of chance.
+      guess_error = std::hypot(guess_error, distance(guessed.simulator.state().positions, right));
+      plain_error = std::hypot(plain_error, distance(plain.simulator.state().positions, right));
     }
     RecordProperty(fmt::format("{}", static_cast<int>(integrator)),
                    fmt::format("{} {} {:.3g} {:.3g}", with, without, guess_error, plain_error));
     EXPECT_LT(with, share * without);
-    EXPECT_LT(guess_error, 2 * plain_error);
+    EXPECT_LT(guess_error, 1.5 * plain_error) << static_cast<int>(integrator);
   }
 }
 

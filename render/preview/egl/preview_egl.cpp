@@ -12,8 +12,8 @@
 
 #include "render/preview/egl/egl_context.h"
 #include "render/preview/egl/gl_objects.h"
+#include "render/preview/egl/preview_shaders.h"
 #include "render/preview/preview.h"
-#include "render/preview/preview_shaders.h"
 #include "render/preview/shadow_views.h"
 #include "render/scene/camera_frame.h"
 #include "render/scene/color_map.h"
