@@ -141,11 +141,11 @@ void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
                    "turns about the vertical through its target; SHOT.turntable.####.png and .mp4")
       ->option_text("N")
       ->check(CLI::Range(1, 10000))
+      ->excludes(render->get_option("--dry-run"))
       ->group("Shot");
   render->callback([&] {
     run = [&parsed] {
-      return parsed.turntable > 0 && !parsed.shot.dry_run ? run_turntable(parsed.shot, parsed.turntable)
-                                                          : run_render(parsed.shot);
+      return parsed.turntable > 0 ? run_turntable(parsed.shot, parsed.turntable) : run_render(parsed.shot);
     };
   });
 

@@ -92,6 +92,41 @@ TEST_F(Surface, AColourOnTheCommandLineTakesThePlaceOfTheTexture) {
   EXPECT_NE(picture(1, "plain"), picture(1, "vertices"));
 }
 
+TEST_F(Surface, BodiesOfOneMeshThatSwapTheirMaterialsMakeANewPicture) {
+  start("swapped");
+  // The materials differ in nothing but the colours of the vertices.
+  write_text(folder_ + "/shot.toml", R"(
+[shot]
+name = "ball"
+frames = [1, 1]
+[body.a]
+mesh = "dressed.obj"
+material = "painted"
+translate = [-0.6, 0, 0]
+tets = 300
+[body.b]
+mesh = "dressed.obj"
+material = "plain"
+translate = [0.6, 0, 0]
+tets = 300
+[material.painted]
+vertex_colors = true
+[material.plain]
+[render]
+width = 32
+height = 16
+samples = 2
+[output]
+movie = false
+)");
+  const Outcome first = render("");
+  ASSERT_EQ(first.status, 0) << first.err;
+  const std::string before = picture(1);
+  const json report = json::parse(render(set("body.a.material", "plain") + set("body.b.material", "painted")).out);
+  EXPECT_EQ(report["pictures"]["traced"], 1);
+  EXPECT_NE(picture(1), before);
+}
+
 TEST_F(Surface, WhatIsMissingIsSaidWithFileAndField) {
   start("missing");
   const auto expect_refused = [&](const std::string& options, const std::vector<std::string>& parts) {
