@@ -80,18 +80,29 @@ float Bsdf::diffuse_passed(float cosine, const Vec2f& e) const {
   return passed(cosine) - (dielectric_f0_ * e.x() + (dielectric_f0_ > 0 ? e.y() : 0.0f));
 }
 
-Bsdf::Shares Bsdf::shares(float cosine, bool inside) const {
-  const Vec2f e = ggx_albedo_.at(cosine);
-  const float past = diffuse_passed(cosine, e);
-  const float reflected = (f0_ * e.x() + f90_ * e.y()).maxCoeff();
-  const float under = diffuse(inside).maxCoeff() * past;
+BsdfView Bsdf::seen_from(const Vec3f& o, bool inside) const {
+  BsdfView view;
+  view.o = o;
+  view.inside = inside;
+  if (lambertian_) return view;
+  view.passed = passed(o.z());
+  view.e = ggx_albedo_.at(o.z());
+  view.diffuse_passed = diffuse_passed(o.z(), view.e);
+  view.shares = shares(view);
+  return view;
+}
+
+LobeShares Bsdf::shares(const BsdfView& view) const {
+  const float cosine = view.o.z();
+  const float reflected = (f0_ * view.e.x() + f90_ * view.e.y()).maxCoeff();
+  const float under = diffuse(view.inside).maxCoeff() * view.diffuse_passed;
   const float returned =
-      metal_return_.maxCoeff() * (passed(cosine) - (e.x() + e.y())) * (mean_passed() - ggx_albedo_.mean().sum());
-  Shares p;
+      metal_return_.maxCoeff() * (view.passed - (view.e.x() + view.e.y())) * (mean_passed() - ggx_albedo_.mean().sum());
+  LobeShares p;
   p.reflection = reflected;
   p.cosine = has_cosine_lobe_ ? under + std::max(0.0f, returned) : 0.0f;
-  p.glass = top_ ? glass_ * passed(cosine) : glass_;
-  p.subsurface = inside ? 0.0f : subsurface_ * past * inside_.color.maxCoeff();
+  p.glass = top_ ? glass_ * view.passed : glass_;
+  p.subsurface = view.inside ? 0.0f : subsurface_ * view.diffuse_passed * inside_.color.maxCoeff();
   if (top_) {
     p.sheen = top_->sheen_share(cosine);
     p.coat = top_->coat_share(cosine);
@@ -102,27 +113,29 @@ Bsdf::Shares Bsdf::shares(float cosine, bool inside) const {
   return p;
 }
 
-Vec3f Bsdf::cosine_lobe(float cos_o, float cos_i, bool inside) const {
+Vec3f Bsdf::cosine_lobe(const BsdfView& view, float cos_i) const {
   constexpr float kInvPi = 1 / kPi;
-  const Vec2f eo = ggx_albedo_.at(cos_o), ei = ggx_albedo_.at(cos_i);
-  Vec3f sum = metal_return_ * ((passed(cos_o) - eo.sum()) * (passed(cos_i) - ei.sum()));
-  sum += diffuse(inside) * (diffuse_scale_ * diffuse_passed(cos_o, eo) * diffuse_passed(cos_i, ei));
+  const Vec2f ei = ggx_albedo_.at(cos_i);
+  Vec3f sum = metal_return_ * ((view.passed - view.e.sum()) * (passed(cos_i) - ei.sum()));
+  sum += diffuse(view.inside) * (diffuse_scale_ * view.diffuse_passed * diffuse_passed(cos_i, ei));
   return sum * (cos_i * kInvPi);
 }
 
-void Bsdf::add_reflection(const Vec3f& o, const Vec3f& i, float share, BsdfValue& sum) const {
+void Bsdf::add_reflection(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const {
+  const Vec3f& o = view.o;
   const Vec3f h = (o + i).normalized();
   const float cos_d = o.dot(h);
   const float distribution = ggx_distribution(h.z(), alpha_);
   const float lambda_o = ggx_lambda(o.z(), alpha_), lambda_i = ggx_lambda(i.z(), alpha_);
   const float common = distribution / (4 * o.z());
-  const float seen = top_ ? std::min(passed(o.z()), passed(i.z())) : 1.0f;
+  const float seen = top_ ? std::min(view.passed, passed(i.z())) : 1.0f;
   sum.value += reflectance(cos_d) * (seen * common / (1 + lambda_o + lambda_i));
-  sum.pdf += share * common / (1 + lambda_o);
+  sum.pdf += view.shares.reflection * common / (1 + lambda_o);
 }
 
-void Bsdf::add_glass(const Vec3f& o, const Vec3f& i, bool inside, float share, BsdfValue& sum) const {
-  const float eta = inside ? 1 / ior_ : ior_;
+void Bsdf::add_glass(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const {
+  const Vec3f& o = view.o;
+  const float eta = view.inside ? 1 / ior_ : ior_;
   const bool reflected = i.z() > 0;
   Vec3f h = reflected ? Vec3f(o + i) : Vec3f(-(o + eta * i));
   // Indices below 1 (light leaving the glass) turn the generalised half vector to the other side.
@@ -134,12 +147,12 @@ void Bsdf::add_glass(const Vec3f& o, const Vec3f& i, bool inside, float share, B
   if (o_h <= 0 || (reflected ? i_h <= 0 : i_h >= 0)) return;
   const float fresnel = fresnel_dielectric(o_h, eta);
   const float visible = visible_normal_density(o, h, alpha_);
-  const float kept = (inside ? glass_inside_ : glass_outside_).at(o.z()).sum();
+  const float kept = (view.inside ? glass_inside_ : glass_outside_).at(o.z()).sum();
   const float denominator = i_h + o_h / eta;
   const float pdf =
       reflected ? fresnel * visible / (4 * o_h) : (1 - fresnel) * visible * std::abs(i_h) / (denominator * denominator);
-  sum.value += Vec3f::Constant(glass_ * passed(o.z()) * pdf * shadowing_weight(o, i.z(), alpha_) / kept);
-  sum.pdf += share * pdf;
+  sum.value += Vec3f::Constant(glass_ * view.passed * pdf * shadowing_weight(o, i.z(), alpha_) / kept);
+  sum.pdf += view.shares.glass * pdf;
 }
 
 BsdfValue Bsdf::evaluate_leaving(const Vec3f& i) const {
@@ -150,30 +163,29 @@ BsdfValue Bsdf::evaluate_leaving(const Vec3f& i) const {
   return {tint * (passed_out * density), density};
 }
 
-void Bsdf::add_base(const Vec3f& o, const Vec3f& i, bool inside, const Shares& p, BsdfValue& sum) const {
+void Bsdf::add_base(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const {
   if (i.z() > 0) {
     if (has_cosine_lobe_) {
-      sum.value += cosine_lobe(o.z(), i.z(), inside);
-      sum.pdf += p.cosine * i.z() / kPi;
+      sum.value += cosine_lobe(view, i.z());
+      sum.pdf += view.shares.cosine * i.z() / kPi;
     }
-    if (!mirror_ && p.reflection > 0) add_reflection(o, i, p.reflection, sum);
+    if (!mirror_ && view.shares.reflection > 0) add_reflection(view, i, sum);
   }
-  if (glass_ > 0 && !mirror_ && i.z() != 0) add_glass(o, i, inside, p.glass, sum);
+  if (glass_ > 0 && !mirror_ && i.z() != 0) add_glass(view, i, sum);
 }
 
-BsdfValue Bsdf::evaluate(const Vec3f& o, const Vec3f& i, bool inside) const {
+BsdfValue Bsdf::evaluate(const BsdfView& view, const Vec3f& i) const {
   BsdfValue sum;
   if (lambertian_) {
     if (i.z() <= 0) return sum;
     return {diffuse_ * (i.z() / kPi), i.z() / kPi};
   }
-  const Shares p = shares(o.z(), inside);
-  add_base(o, i, inside, p, sum);
+  add_base(view, i, sum);
   if (!top_) return sum;
-  sum.value = sum.value.cwiseProduct(top_->tint(o.z()));
+  sum.value = sum.value.cwiseProduct(top_->tint(view.o.z()));
   if (i.z() <= 0) return sum;
   sum.value = sum.value.cwiseProduct(top_->tint(i.z()));
-  top_->add(o, i, p.sheen, p.coat, sum);
+  top_->add(view.o, i, view.shares.sheen, view.shares.coat, sum);
   return sum;
 }
 
@@ -201,10 +213,11 @@ Vec3f Bsdf::sample_rough_glass(const Vec3f& o, float u_side, const Vec2f& u, flo
   return refract(o, h, eta, i) && i.z() < 0 ? i : Vec3f::Zero();
 }
 
-Bsdf::Drawn Bsdf::draw_reflection(const Vec3f& o, const Vec2f& u, float share, BsdfSample& sample) const {
+Bsdf::Drawn Bsdf::draw_reflection(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const {
+  const Vec3f& o = view.o;
   if (mirror_) {
     sample.direction = Vec3f(-o.x(), -o.y(), o.z());
-    sample.weight = reflectance(o.z()) * passed(o.z()) / share;
+    sample.weight = reflectance(o.z()) * view.passed / view.shares.reflection;
     if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(o.z()).array().square().matrix());
     sample.mirror = true;
     sample.pdf = 0;
@@ -215,7 +228,9 @@ Bsdf::Drawn Bsdf::draw_reflection(const Vec3f& o, const Vec2f& u, float share, B
   return sample.direction.z() > 0 ? Drawn::Direction : Drawn::Nothing;
 }
 
-Bsdf::Drawn Bsdf::draw_layer(const Vec3f& o, float lobe, const Vec2f& u, const Shares& p, BsdfSample& sample) const {
+Bsdf::Drawn Bsdf::draw_layer(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const {
+  const Vec3f& o = view.o;
+  const LobeShares& p = view.shares;
   sample.wide = true;
   if (lobe < p.sheen) {
     sample.direction = TopLayers::sample_sheen(u);
@@ -224,7 +239,7 @@ Bsdf::Drawn Bsdf::draw_layer(const Vec3f& o, float lobe, const Vec2f& u, const S
   if (lobe < p.sheen + p.subsurface) {
     // Enters as it would leave: evenly over the projected hemisphere.
     sample.direction = -cosine_hemisphere(u);
-    sample.weight = Vec3f::Constant(subsurface_ * diffuse_passed(o.z(), ggx_albedo_.at(o.z())) / p.subsurface);
+    sample.weight = Vec3f::Constant(subsurface_ * view.diffuse_passed / p.subsurface);
     if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(o.z()));
     sample.subsurface = true;
     sample.pdf = 0;
@@ -239,24 +254,24 @@ Bsdf::Drawn Bsdf::draw_layer(const Vec3f& o, float lobe, const Vec2f& u, const S
   return Drawn::Whole;
 }
 
-Bsdf::Drawn Bsdf::draw_base(const Vec3f& o, float lobe, const Vec2f& u, bool inside, const Shares& p,
-                            BsdfSample& sample) const {
+Bsdf::Drawn Bsdf::draw_base(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const {
+  const LobeShares& p = view.shares;
   sample.wide = alpha_ >= kWideAlpha;
   if (lobe < p.cosine) {
     sample.direction = cosine_hemisphere(u);
     sample.wide = true;
     return Drawn::Direction;
   }
-  if (lobe < p.cosine + p.reflection) return draw_reflection(o, u, p.reflection, sample);
+  if (lobe < p.cosine + p.reflection) return draw_reflection(view, u, sample);
   if (!(p.glass > 0)) return Drawn::Nothing;
-  const float eta = inside ? 1 / ior_ : ior_;
+  const float eta = view.inside ? 1 / ior_ : ior_;
   const float side = std::clamp((lobe - p.cosine - p.reflection) / p.glass, 0.0f, 0x1.fffffep-1f);
-  if (mirror_) return draw_mirror_glass(o, side, eta, p.glass, sample);
-  sample.direction = sample_rough_glass(o, side, u, eta);
+  if (mirror_) return draw_mirror_glass(view.o, side, eta, p.glass, sample);
+  sample.direction = sample_rough_glass(view.o, side, u, eta);
   return sample.direction.z() != 0 ? Drawn::Direction : Drawn::Nothing;
 }
 
-bool Bsdf::sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfSample& sample) const {
+bool Bsdf::sample(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const {
   sample.mirror = sample.subsurface = false;
   if (lambertian_) {
     sample.direction = cosine_hemisphere(u);
@@ -265,12 +280,11 @@ bool Bsdf::sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfS
     sample.wide = true;
     return sample.pdf > 0;
   }
-  const Shares p = shares(o.z(), inside);
+  const LobeShares& p = view.shares;
   const float layers = p.sheen + p.subsurface + p.coat;
-  const Drawn drawn =
-      lobe < layers ? draw_layer(o, lobe, u, p, sample) : draw_base(o, lobe - layers, u, inside, p, sample);
+  const Drawn drawn = lobe < layers ? draw_layer(view, lobe, u, sample) : draw_base(view, lobe - layers, u, sample);
   if (drawn != Drawn::Direction) return drawn == Drawn::Whole;
-  const BsdfValue value = evaluate(o, sample.direction, inside);
+  const BsdfValue value = evaluate(view, sample.direction);
   if (!(value.pdf > 0)) return false;
   sample.pdf = value.pdf;
   sample.weight = value.value / value.pdf;

@@ -39,6 +39,21 @@ struct AlbedoTables {
   static AlbedoTables between(const AlbedoTables& a, const AlbedoTables& b, float share);
 };
 
+/// Probabilities of sampling the lobes, as seen from one direction.
+struct LobeShares {
+  float sheen = 0, coat = 0, reflection = 0, cosine = 0, subsurface = 0, glass = 0;
+};
+
+/// A material seen from one direction: what all light that comes from there, or goes there, has in common.
+struct BsdfView {
+  Vec3f o = Vec3f::Zero();
+  bool inside = false;
+  float passed = 1;          ///< past coat and sheen
+  Vec2f e = Vec2f::Zero();   ///< of the reflection's albedo table
+  float diffuse_passed = 1;  ///< past all that is above the diffuse lobe
+  LobeShares shares;
+};
+
 /// One prepared material. Directions are local, unit, and point away from the surface; `o` towards the viewer, on the
 /// side of +z. `inside`: +z is the inside of the body.
 class Bsdf {
@@ -47,9 +62,15 @@ class Bsdf {
   /// Quick; tables: those of an appearance that differs in base colour only, or between those of two neighbours.
   Bsdf(const Appearance& appearance, const AlbedoTables& tables);
 
-  BsdfValue evaluate(const Vec3f& o, const Vec3f& i, bool inside) const;
+  BsdfView seen_from(const Vec3f& o, bool inside) const;
+  BsdfValue evaluate(const BsdfView& view, const Vec3f& i) const;
   /// lobe, u: numbers in [0, 1). False if the sample carries nothing.
-  bool sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfSample& sample) const;
+  bool sample(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const;
+
+  BsdfValue evaluate(const Vec3f& o, const Vec3f& i, bool inside) const { return evaluate(seen_from(o, inside), i); }
+  bool sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfSample& out) const {
+    return sample(seen_from(o, inside), lobe, u, out);
+  }
 
   /// Whether evaluate() can be above 0, so that sampling lights makes sense.
   bool has_smooth_part() const { return has_cosine_lobe_ || !mirror_ || (top_ && top_->has_smooth_part()); }
@@ -65,11 +86,7 @@ class Bsdf {
   BsdfValue evaluate_leaving(const Vec3f& i) const;
 
  private:
-  /// Probabilities of sampling the lobes, as seen from one direction.
-  struct Shares {
-    float sheen = 0, coat = 0, reflection = 0, cosine = 0, subsurface = 0, glass = 0;
-  };
-  Shares shares(float cosine, bool inside) const;
+  LobeShares shares(const BsdfView& view) const;
   void prepare_metal(const Appearance& appearance);
   Vec3f reflectance(float cosine) const { return f0_ + (f90_ - f0_) * schlick_weight(cosine); }
   /// Of light that reaches the base; 1 without layers.
@@ -78,18 +95,18 @@ class Bsdf {
   /// Share of light that gets past all that is above the diffuse lobe; e: of ggx_albedo_.
   float diffuse_passed(float cosine, const Vec2f& e) const;
   const Vec3f& diffuse(bool inside) const { return inside ? diffuse_from_behind_ : diffuse_; }
-  Vec3f cosine_lobe(float cos_o, float cos_i, bool inside) const;
-  void add_reflection(const Vec3f& o, const Vec3f& i, float share, BsdfValue& sum) const;
-  void add_glass(const Vec3f& o, const Vec3f& i, bool inside, float share, BsdfValue& sum) const;
-  void add_base(const Vec3f& o, const Vec3f& i, bool inside, const Shares& p, BsdfValue& sum) const;
+  Vec3f cosine_lobe(const BsdfView& view, float cos_i) const;
+  void add_reflection(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const;
+  void add_glass(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const;
+  void add_base(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const;
 
   /// What drawing a lobe has settled: nothing is carried, all of the sample, or its direction only.
   enum class Drawn { Nothing, Whole, Direction };
   /// Of the layers and of the subsurface lobe; lobe: below the sum of their shares.
-  Drawn draw_layer(const Vec3f& o, float lobe, const Vec2f& u, const Shares& p, BsdfSample& sample) const;
+  Drawn draw_layer(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const;
   /// Of the base; lobe: from 0 on for these alone.
-  Drawn draw_base(const Vec3f& o, float lobe, const Vec2f& u, bool inside, const Shares& p, BsdfSample& sample) const;
-  Drawn draw_reflection(const Vec3f& o, const Vec2f& u, float share, BsdfSample& sample) const;
+  Drawn draw_base(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const;
+  Drawn draw_reflection(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const;
   Drawn draw_mirror_glass(const Vec3f& o, float u, float eta, float share, BsdfSample& sample) const;
   Vec3f sample_rough_glass(const Vec3f& o, float u_side, const Vec2f& u, float eta) const;
 

@@ -70,7 +70,7 @@ void PathIntegrator::catch_shadow(const RayHit& hit, const Ray& ray) {
 }
 
 void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                                const Vec3f& to_viewer, const SampleBlock& numbers) {
+                                const BsdfView& view, const SampleBlock& numbers) {
   const LightSet& lights = *picture_.lights;
   const Vec2f u(numbers[kLightU], numbers[kLightV]);
   const std::size_t rays = origin_.receiver.every_light ? lights.count() : 1;
@@ -80,16 +80,15 @@ void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, con
     const bool found = origin_.receiver.every_light
                            ? lights.sample_light(k, origin_.receiver, numbers[kLight], u, light, point_like)
                            : lights.sample(origin_.receiver, numbers[kLight], u, light, point_like);
-    if (found) add_light(bsdf, point, frame, to_viewer, light, point_like);
+    if (found) add_light(bsdf, point, frame, view, light, point_like);
   }
 }
 
 void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                               const Vec3f& to_viewer, const LightSample& light, bool point_like) {
+                               const BsdfView& view, const LightSample& light, bool point_like) {
   if (picture_.direct_light == DirectLight::Scattering) return;
   const Vec3f towards = frame.to_local(light.direction);
-  const BsdfValue value =
-      leaving_ ? bsdf.evaluate_leaving(towards) : bsdf.evaluate(frame.to_local(to_viewer), towards, point.inside);
+  const BsdfValue value = leaving_ ? bsdf.evaluate_leaving(towards) : bsdf.evaluate(view, towards);
   if (value.value.maxCoeff() <= 0) return;
   const bool weighed = !point_like && picture_.direct_light == DirectLight::Weighed;
   const float weight = weighed ? power_heuristic(light.pdf, value.pdf) : 1.0f;
@@ -104,11 +103,9 @@ void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, cons
 }
 
 bool PathIntegrator::scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                             const Vec3f& to_viewer, const SampleBlock& numbers, Ray& ray) {
+                             const BsdfView& view, const SampleBlock& numbers, Ray& ray) {
   BsdfSample next;
-  if (!bsdf.sample(frame.to_local(to_viewer), numbers[kLobe], Vec2f(numbers[kBsdfU], numbers[kBsdfV]), point.inside,
-                   next))
-    return false;
+  if (!bsdf.sample(view, numbers[kLobe], Vec2f(numbers[kBsdfU], numbers[kBsdfV]), next)) return false;
   throughput_ = throughput_.cwiseProduct(next.weight);
   if (!(throughput_.maxCoeff() > 0)) return false;
   follow(next, point, frame, ray);
@@ -146,7 +143,7 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   const ShadingFrame frame(out.shading_normal);
   origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light, time_};
   leaving_ = true;
-  add_direct(bsdf, out, frame, exit.ray.direction, leaving_numbers);
+  add_direct(bsdf, out, frame, {}, leaving_numbers);
   leaving_ = false;
   BsdfSample next;
   next.direction = cosine_hemisphere(Vec2f(leaving_numbers[kBsdfU], leaving_numbers[kBsdfV]));
@@ -198,12 +195,12 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     if (bounces_ == picture_.max_bounces) break;
     const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(++bounces_));
     const ShadingFrame frame(point.shading_normal);
-    const Vec3f to_viewer = -ray.direction;
+    const BsdfView view = bsdf.seen_from(frame.to_local(-ray.direction), point.inside);
     // What the camera sees directly makes most of the noise: few lights are all sampled there.
     const bool every_light = bounces_ == 1 && picture_.lights->count() <= kFewLights;
     origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, time_};
-    if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, to_viewer, numbers);
-    if (!scatter(bsdf, point, frame, to_viewer, numbers, ray)) break;
+    if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, view, numbers);
+    if (!scatter(bsdf, point, frame, view, numbers, ray)) break;
     cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
   }
   return radiance_;

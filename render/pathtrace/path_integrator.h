@@ -69,13 +69,13 @@ class PathIntegrator {
   void add(const Vec3f& radiance);
   /// What the camera sees of the shadow catcher: nothing but its alpha.
   void catch_shadow(const RayHit& hit, const Ray& ray);
-  /// Light sampling at a point.
-  void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
+  /// Light sampling at a point. view: of `bsdf` from where the path comes; not asked for while light leaves a body.
+  void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
                   const SampleBlock& numbers);
-  void add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
+  void add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
                  const LightSample& light, bool point_like);
   /// Continues the path; false where it ends.
-  bool scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const Vec3f& to_viewer,
+  bool scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
                const SampleBlock& numbers, Ray& ray);
   /// Takes a sampled direction.
   void follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame, Ray& ray);
