@@ -45,7 +45,7 @@ def subcommands(program):
 
 def command_lines(program, mesh):
     names = subcommands(program)
-    lines = [["/bin/true"], [program, "--version"], [program, "--help"]]
+    lines = [["/bin/true"], [program, "fields"], [program, "--help"]]
     lines += [[program, name, "--help"] for name in names]
     lines += [[program, "fields"], [program, "check", SHOT], [program, "inspect", mesh]]
     if "status" in names:

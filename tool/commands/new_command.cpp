@@ -1,5 +1,7 @@
 #include <cstdio>
 #include <filesystem>
+#include <mutex>
+#include <set>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -40,7 +42,13 @@ int run_new(const NewOptions& options) {
   const std::string path = target_of(options);
   require_free(path, options.force);
   Console console(Verbosity::Normal, isatty(STDERR_FILENO) != 0);
-  const Log log{{}, console.log().warning_sink};  // facts are printed below, in order
+  std::set<std::string> said;
+  std::mutex said_mutex;
+  const Log log{{},  // facts are printed below, in order
+                [&](const std::string& line) {
+                  const std::lock_guard lock(said_mutex);  // the mesh is read and filled more than once
+                  if (said.insert(line).second) console.warn(line);
+                }};
   const Threads threads(options.threads, &cancellation());
   StageTimes times;
   const Cache cache("", Cache::Storing::Wanted, log);  // nothing is asked of it

@@ -22,7 +22,8 @@ constexpr double kStandsFrom = 0.4;  ///< height over width from which a body is
 constexpr double kFlatUnder = 0.02;  ///< height over width under which there is no height to fit
 constexpr double kHover = 0.3;       ///< m above the ground, of bodies that are held at one end
 constexpr std::int64_t kTets = 20000, kMoreTets = 80000;
-constexpr double kSheetThickness = 0.02;  ///< of the box's diagonal
+/// Of sheets, in shares of the box's diagonal. Thinner than this hardly shows; where sheets lie closer than that, less.
+constexpr double kSheet = 0.02, kThinSheet = 0.005;
 
 /// Share of the box's cross-section that triangles facing down cover at the very bottom along an axis: a base.
 double base_share(const SurfaceMesh& mesh, int axis) {
@@ -98,20 +99,21 @@ void choose_place(const RunContext& context, StarterBody& body) {
 struct Filling {
   std::int64_t tets;
   TetMode mode;
-  bool thick;
+  double thickness;  ///< of sheets, share of the box's diagonal; 0: none
   const char* reason;
 };
 
 std::vector<Filling> fillings(std::int64_t tets, bool is_open) {
   const std::int64_t usual = tets > 0 ? tets : kTets, more = std::max(usual, kMoreTets);
   std::vector<Filling> ways{
-      {usual, TetMode::Conforming, false, ""},
-      {more, TetMode::Conforming, false, "Fewer are too coarse for its thin parts."},
-      {usual, TetMode::Embedded, false, "Chosen because tetrahedra that end at the surface lose its thin parts."}};
+      {usual, TetMode::Conforming, 0, ""},
+      {more, TetMode::Conforming, 0, "Fewer are too coarse for its thin parts."},
+      {usual, TetMode::Embedded, 0, "Chosen because tetrahedra that end at the surface lose its thin parts."}};
   const char* open = "Chosen because the surface is open and encloses no volume of its own.";
   if (is_open) {
-    ways.push_back({usual, TetMode::Embedded, true, open});
-    ways.push_back({more, TetMode::Embedded, true, open});
+    ways.push_back({usual, TetMode::Embedded, kSheet, open});
+    ways.push_back({usual, TetMode::Embedded, kThinSheet, open});
+    ways.push_back({more, TetMode::Embedded, kThinSheet, open});
   }
   return ways;
 }
@@ -124,7 +126,7 @@ FilledBody fill(const RunContext& context, const StarterWishes& wishes, StarterB
   for (const Filling& way : fillings(wishes.tets, is_open)) {
     body.settings.tets = way.tets;
     body.settings.mode = way.mode;
-    body.settings.thickness = way.thick ? rounded(kSheetThickness * used_bounds(body.loaded.surface).diagonal()) : 0;
+    body.settings.thickness = rounded(way.thickness * used_bounds(body.loaded.surface).diagonal());
     body.fill_reason = way.reason;
     try {
       return fill_body_anew(body.settings, body.loaded, context);

@@ -12,6 +12,7 @@
 #include "tool/shot/shot_select.h"
 #include "tool/starter/commented_document.h"
 #include "tool/starter/preset_library.h"
+#include "tool/starter/starter_stage.h"
 
 namespace softreel {
 namespace {
@@ -83,77 +84,6 @@ double bearable_weight(const StarterBody& body, double youngs_modulus, double de
   return std::min(kEarth, std::stod(two_digits(most)));
 }
 
-/// What presents the body: lamps, camera, ground, picture. Made for bodies of about a metre.
-constexpr const char* kStage = R"(
-[solver]
-substeps = 4
-
-[camera]
-mode = "frame"
-azimuth_deg = 24
-elevation_deg = 8
-margin = MARGIN
-shift = SHIFT
-focal_length_mm = 60
-
-[[light]]
-type = "area"
-center = [-1.9, 3.1, 2.5]
-aim = [0, 0.5, 0]
-size = [2.4, 2.4]
-color = [1.0, 0.90, 0.78]
-power = 330
-visible = false
-
-[[light]]
-type = "area"
-center = [2.4, 2.4, -1.9]
-aim = [0, 0.6, 0]
-size = [2.0, 2.0]
-color = [0.80, 0.90, 1.0]
-power = 200
-visible = false
-
-[environment]
-zenith = [0.48, 0.62, 0.85]
-horizon = [0.36, 0.48, 0.62]
-nadir = [0.20, 0.20, 0.22]
-strength = 0.55
-
-[ground]
-style = "sweep"
-sweep = 4
-color = [0.06, 0.20, 0.23]
-roughness = 0.8
-
-[render]
-width = 960
-height = 540
-samples = 16
-max_bounces = 4
-shutter = 0.5
-
-[output]
-directory = "out"
-view = "filmic"
-png = true
-exr = false
-movie = true
-)";
-
-/// The stage with room above the body for where it is pulled.
-std::string stage_for(const StarterBody& body) {
-  const double height = used_bounds(body.loaded.surface).size().y();
-  const double up = height > 1e-3 * body.length ? (body.stands ? 0.12 : 0.1) * body.length / height : 0;
-  std::string stage = kStage;
-  const auto put = [&stage](const std::string& word, const std::string& value) {
-    stage.replace(stage.find(word), word.size(), value);
-  };
-  put("MARGIN", body.stands ? "1.4" : "1.6");
-  put("SHIFT", fmt::format("[0, {:.2g}, 0]", up));
-  return stage;
-}
-
 class StarterText {
  public:
   StarterText(const StarterOptions& options, const RunContext& context)
@@ -197,8 +127,22 @@ class StarterText {
       material_file_ = material_file(material_);
       material_tree_ = load_layers(material_file_, {});
     }
+    fit_look();
     modulus_ = number_in(material_tree_, material_, "youngs_modulus", 1e5);
     density_ = number_in(material_tree_, material_, "density", 1000);
+  }
+
+  /// Takes out of the material what this mesh has nothing for.
+  void fit_look() {
+    const SurfaceMesh& mesh = body_.loaded.file_mesh;
+    auto& fields = *material_tree_.find("material")->find(material_)->table();
+    const auto is_unfit = [&mesh](const TomlEntry& field) {
+      return (mesh.colors.empty() && field.key == "vertex_colors") ||
+             (mesh.triangle_textures.empty() && field.key.ends_with("_texture"));
+    };
+    for (const TomlEntry& field : fields)
+      if (is_unfit(field)) left_out_ += (left_out_.empty() ? "" : ", ") + field.key;
+    std::erase_if(fields, is_unfit);
   }
 
   /// The body's own table, its pin and its pull.
@@ -365,6 +309,9 @@ class StarterText {
     else
       lines.push_back(fmt::format("holds {} ({} points), pulls {} ({} points)", body_.held.words, body_.held.points,
                                   body_.pulled.words, body_.pulled.points));
+    if (!left_out_.empty())
+      lines.push_back(
+          fmt::format("left out of {}, for the mesh has no colours or texture coordinates: {}", material_, left_out_));
     if (!preset_file_.empty() && !motion_from_preset_)
       lines.push_back(fmt::format("pins and pulls of {} do not fit this mesh; these are others", options_.like));
     return lines;
@@ -395,7 +342,7 @@ class StarterText {
   fs::path folder_;
   std::string name_;
   StarterBody body_;
-  std::string preset_file_, material_, material_file_;
+  std::string preset_file_, material_, material_file_, left_out_;
   TomlValue preset_ = toml_value(TomlValue::Table{}), material_tree_;
   double modulus_ = 0, density_ = 0;
   bool motion_from_preset_ = false;

@@ -45,7 +45,7 @@ constexpr const char* kMeshes[] = {"creature.ply",
                                    "bar.ply",
                                    "/usr/share/assimp/models/OBJ/box.obj",
                                    "/usr/share/assimp/models/OBJ/concave_polygon.obj",
-                                   "/usr/share/assimp/models/STL/Wuson.stl",
+                                   "/usr/share/assimp/models/STL/sphereWithHole.stl",
                                    "/usr/share/assimp/models/OFF/Cube.off",
                                    "/usr/share/assimp/models/Collada/duck.dae",
                                    "/usr/share/assimp/models/PLY/cube.ply",
@@ -114,11 +114,13 @@ TEST(NewShots, TakeAMaterialAndTheLookOfAPreset) {
   const Outcome jelly = run(start + "--material jelly");
   EXPECT_EQ(jelly.status, 0) << jelly.err;
   EXPECT_NE(jelly.out.find("[material.jelly]"), std::string::npos);
+  // Its material wants colours of the vertices, which this mesh has not.
   const Outcome like =
-      run(fmt::format("cd {0}; softreel new sphere.obj --tets 300 --like daylight -o like.toml && "
-                      "softreel check like.toml && softreel render like.toml --output out {1}",
-                      folder, kQuick));
+      run(fmt::format("cd {}; softreel new sphere.obj --tets 300 --like daylight -o like.toml", folder));
   EXPECT_EQ(like.status, 0) << like.err;
+  EXPECT_NE(like.out.find("left out"), std::string::npos) << like.out;
+  const Outcome rendered = run(fmt::format("cd {}; softreel render like.toml --output out {}", folder, kQuick));
+  EXPECT_EQ(rendered.status, 0) << rendered.err;
   EXPECT_NE(read_text(folder + "/like.toml").find("[environment.sky]"), std::string::npos);
   const Outcome unknown = run(start + "--material jely");
   EXPECT_EQ(unknown.status, 2);
