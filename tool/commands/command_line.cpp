@@ -24,6 +24,9 @@ constexpr const char* kFooter =
     "Options of a command: softreel COMMAND --help. Fields of a shot: softreel explain [FIELD]. Examples: presets/.\n"
     "Exit status: 0 done; 1 the work failed; 2 the input is wrong or a part is not built in; 130 after Ctrl-C.";
 
+constexpr const char* kCommandFooter =
+    "Fields: softreel explain FIELD. Exit status: 0 done; 1 the work failed; 2 the input is wrong; 130 after Ctrl-C.";
+
 /// Accepts finite numbers above 0; CLI11's own check lets NaN pass and prints its bounds with 300 digits.
 CLI::Validator length() {
   return {[](std::string& text) {
@@ -311,7 +314,7 @@ int run_command_line(int argc, char** argv) {
   CLI::App app(
       "softreel fills surface meshes with tetrahedra, deforms them under keyed pins and pulls, and renders them.",
       "softreel");
-  app.footer(kFooter);
+  app.footer(kCommandFooter);  // which the subcommands take over
   app.require_subcommand(0, 1);
   Parsed parsed;
   Runner run;
@@ -324,6 +327,7 @@ int run_command_line(int argc, char** argv) {
   add_bench_command(app, parsed, run);
   group_commands(app);
   add_log_options(app, parsed.log);
+  app.footer(kFooter);
   try {
     app.parse(argc, argv);
     if (!parsed.everyday.version && app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");

@@ -30,15 +30,12 @@ void add_log_options(CLI::App& app, LogChoice& choice) {
     CLI::Option* quiet = command->get_option_no_throw("--quiet");
     if (quiet == nullptr) quiet = command->add_flag("--quiet", choice.quiet, "print warnings and errors only");
     quiet->group(kGroup);
-    CLI::Option* verbose =
-        command->add_flag("--verbose", choice.verbose, "say more: files, folders, settings and times")->group(kGroup);
-    verbose->excludes(quiet);
+    command->add_flag("--verbose", choice.verbose, "say more: files, folders, settings and times")->group(kGroup);
     command
         ->add_option("--log-level", choice.level,
                      "error | warning (as --quiet) | info | debug (as --verbose) [SOFTREEL_LOG, else info]")
         ->check(CLI::IsMember({"error", "warning", "info", "debug"}))
-        ->excludes(quiet)
-        ->excludes(verbose)
+        ->option_text("LEVEL")
         ->group(kGroup);
     command
         ->add_option("--log-file", choice.file, "add messages of all levels, with date and time, to the end of a file")
@@ -49,12 +46,16 @@ void add_log_options(CLI::App& app, LogChoice& choice) {
 
 void apply_log_options(CLI::App& command, const LogChoice& choice) {
   CLI::Option* quiet = command.get_option_no_throw("--quiet");
+  const bool is_quiet = quiet != nullptr && quiet->count() > 0;
+  if (int{is_quiet} + int{choice.verbose} + int{!choice.level.empty()} > 1)
+    throw input_error(
+        "--quiet, --verbose, --log-level: more than one is given.\n  Accepted: one of them. Leave the others out.");
   LogLevel level = LogLevel::Info;
   if (!choice.level.empty())
     level = *level_named(choice.level);
   else if (choice.verbose)
     level = LogLevel::Debug;
-  else if (quiet != nullptr && quiet->count() > 0)
+  else if (is_quiet)
     level = LogLevel::Warning;
   else
     level = level_of_environment();
