@@ -1,11 +1,12 @@
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "core/base/error.h"
 #include "tool/commands/command_line.h"
 #include "tool/commands/interruption.h"
+#include "tool/report/console.h"
 
 int main(int argc, char** argv) {
   softreel::watch_for_interruption();
@@ -13,14 +14,13 @@ int main(int argc, char** argv) {
   try {
     return softreel::run_command_line(argc, argv);
   } catch (const softreel::Error& error) {
-    std::fprintf(stderr, "\nsoftreel: %s\n", error.what());
+    softreel::say_error(error.what());
     return static_cast<int>(error.kind());
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr,
-                 "\nsoftreel: out of memory.\n  Fewer tetrahedra (body.NAME.tets) or smaller pictures need less.\n");
+    softreel::say_error("out of memory.\n  Fewer tetrahedra (body.NAME.tets) or smaller pictures need less.");
     return 1;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "\nsoftreel: %s\n  This is a mistake in softreel, not in your files.\n", error.what());
+    softreel::say_error(std::string(error.what()) + "\n  This is a mistake in softreel, not in your files.");
     return 1;
   }
 }

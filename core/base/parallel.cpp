@@ -8,9 +8,11 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/version.h>
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "core/base/library_version.h"
 #include "core/base/thread_team.h"
 
 namespace softreel {
@@ -101,6 +103,11 @@ void Threads::run(const std::function<void()>& work) const {
     }
   });
   if (failure) std::rethrow_exception(failure);
+}
+
+std::string thread_library_version() {
+  const char* said = TBB_runtime_version();
+  return said == nullptr ? "" : said;
 }
 
 }  // namespace softreel

@@ -15,11 +15,13 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <OpenEXRConfig.h>
 #include <fmt/format.h>
 #include <png.h>
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "render/image/image_library_versions.h"
 #include "render/image/view_transform.h"
 
 #define STB_IMAGE_STATIC
@@ -295,6 +297,10 @@ EnvironmentImage read_environment(const std::string& path) {
                      "files ending in .exr, .hdr, .png, .jpg, .jpeg");
   require_finite(image, path);
   return image;
+}
+
+std::vector<ImageLibraryVersion> image_library_versions() {
+  return {{"OpenEXR", OPENEXR_VERSION_STRING, false}, {"libpng", png_get_libpng_ver(nullptr), true}};
 }
 
 }  // namespace softreel

@@ -7,6 +7,7 @@ PROGRAM is the built softreel, RUNS how often each command runs [40]. Prints tab
 libraries. The first row, of /bin/true, is what any process costs here. Commands take turns, so that a slow second of the
 machine does not fall on one of them.
 """
+import json
 import os
 import re
 import statistics
@@ -35,9 +36,9 @@ f 4 1 5 8
 
 
 def subcommands(program):
-    """The names under "Subcommands:" of the program's own help."""
-    text = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
-    names = re.findall(r"^  ([a-z]+) ", text.split("Subcommands:")[1], re.MULTILINE)
+    """The names in the program's own table of commands."""
+    text = subprocess.run([program, "completion", "json"], check=True, capture_output=True, text=True).stdout
+    names = [command["name"] for command in json.loads(text)["commands"]]
     if not names:
         sys.exit("start_up.py: %s --help lists no subcommands" % program)
     return names
@@ -45,7 +46,7 @@ def subcommands(program):
 
 def command_lines(program, mesh):
     names = subcommands(program)
-    lines = [["/bin/true"], [program, "--version"], [program, "--help"]]
+    lines = [["/bin/true"], [program, "--help"]]
     lines += [[program, name, "--help"] for name in names]
     lines += [[program, "fields"], [program, "check", SHOT], [program, "inspect", mesh]]
     if "status" in names:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
+#include <filesystem>
 #include <functional>
 
 #include <CLI/CLI.hpp>
@@ -12,14 +12,20 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "tool/commands/commands.h"
-#include "tool/shot/schema.h"
+#include "tool/commands/everyday_commands.h"
+#include "tool/commands/log_options.h"
+#include "tool/report/version.h"
 
 namespace softreel {
 namespace {
 
 constexpr const char* kFooter =
-    "Exit status: 0 done; 1 the work failed; 2 the input is wrong or a part is not built in; 130 after Ctrl-C.\n"
-    "Fields of shots: softreel fields [PATH]. Examples: the shots in presets/.";
+    "First steps: softreel new MESH -o SHOT.toml; softreel preview SHOT.toml; softreel render SHOT.toml.\n"
+    "Options of a command: softreel COMMAND --help. Fields of a shot: softreel explain [FIELD]. Examples: presets/.\n"
+    "Exit status: 0 done; 1 the work failed; 2 the input is wrong or a part is not built in; 130 after Ctrl-C.";
+
+constexpr const char* kCommandFooter =
+    "Fields: softreel explain FIELD. Exit status: 0 done; 1 the work failed; 2 the input is wrong; 130 after Ctrl-C.";
 
 /// Accepts finite numbers above 0; CLI11's own check lets NaN pass and prints its bounds with 300 digits.
 CLI::Validator length() {
@@ -105,7 +111,8 @@ struct Parsed {
   InspectOptions inspect;
   TetrahedralizeOptions tetrahedralize;
   BenchCommandOptions bench;
-  std::string field;
+  EverydayOptions everyday;
+  LogChoice log;
 };
 
 using Runner = std::function<int()>;
@@ -217,8 +224,10 @@ void add_mesh_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   inspect
       ->add_option("mesh", parsed.inspect.mesh,
                    "surface mesh in any format assimp reads, or tetrahedra: .mesh (Medit), .msh (Gmsh), .vtk, .vtu")
-      ->required();
-  inspect->add_option("--surface", parsed.inspect.surface, "of tetrahedra: measure their distance to this surface");
+      ->required()
+      ->option_text("MESH");
+  inspect->add_option("--surface", parsed.inspect.surface, "of tetrahedra: measure their distance to this surface")
+      ->option_text("MESH");
   inspect->add_option("--threads", parsed.inspect.threads, "number of threads [all processors]")
       ->check(CLI::Range(1, 1024));
   inspect->add_flag("--json", parsed.inspect.json, "as JSON");
@@ -230,8 +239,11 @@ void add_mesh_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   tets->add_option("mesh", options.mesh,
                    "surface mesh in any format assimp reads, or tetrahedra (.mesh, .msh, .vtk, .vtu) to optimize or to "
                    "write in another format")
-      ->required();
-  tets->add_option("-o,--output", options.output, "file to write: .vtu, .msh (Gmsh 2.2) or .mesh (Medit)")->required();
+      ->required()
+      ->option_text("MESH");
+  tets->add_option("-o,--output", options.output, "file to write: .vtu, .msh (Gmsh 2.2) or .mesh (Medit)")
+      ->required()
+      ->option_text("OUT.vtu");
   CLI::Option* edge =
       tets->add_option("--edge", options.edge, "long edge of the lattice, in the mesh's unit")->check(length());
   CLI::Option* count = tets->add_option("--tets", options.tets, "number of tetrahedra, met within 5 % [20000]")
@@ -259,15 +271,6 @@ void add_mesh_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   tets->add_flag("--json", options.json, "print the report as JSON");
   add_picture_options(*tets, options.picture);
   tets->callback([&] { run = [&parsed] { return run_tetrahedralize(parsed.tetrahedralize); }; });
-
-  CLI::App* fields = app.add_subcommand("fields", "print the reference of all fields of a shot, or of one");
-  fields->add_option("path", parsed.field, "field, e.g. body.*.pin[].select");
-  fields->callback([&] {
-    run = [&parsed] {
-      std::printf("%s\n", (parsed.field.empty() ? shot_reference() : explain_field(parsed.field)).c_str());
-      return 0;
-    };
-  });
 }
 
 void add_bench_command(CLI::App& app, Parsed& parsed, Runner& run) {
@@ -297,28 +300,45 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& mistake, i
                      nearest.empty() ? "" : fmt::format("Did you mean {}? ", nearest), fmt::join(names, ", "));
 }
 
+/// What is run, and where, for logs.
+void say_command(int argc, char** argv) {
+  std::error_code ignored;
+  Console(Verbosity::Normal, false)
+      .debug(fmt::format("{}; in {}: {}", version_text(), std::filesystem::current_path(ignored).string(),
+                         fmt::join(std::vector<std::string>(argv, argv + argc), " ")));
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
   CLI::App app(
       "softreel fills surface meshes with tetrahedra, deforms them under keyed pins and pulls, and renders them.",
       "softreel");
-  app.set_version_flag("--version", version_text());
-  app.footer(kFooter);
-  app.require_subcommand(1);
+  app.footer(kCommandFooter);  // which the subcommands take over
+  app.require_subcommand(0, 1);
   Parsed parsed;
   Runner run;
+  add_version_option(app, parsed.everyday);
+  add_new_command(app, parsed.everyday, run);
   add_making_commands(app, parsed, run);
   add_looking_commands(app, parsed, run);
   add_mesh_commands(app, parsed, run);
+  add_reference_commands(app, parsed.everyday, run);
   add_bench_command(app, parsed, run);
+  group_commands(app);
+  add_log_options(app, parsed.log);
+  app.footer(kFooter);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::Success& request) {  // --help, --version
+    if (!parsed.everyday.version && app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
+  } catch (const CLI::Success& request) {  // --help
     return app.exit(request);
   } catch (const CLI::ParseError& mistake) {
     throw input_error(usage_message(app, mistake, argc, argv));
   }
+  if (parsed.everyday.version) return run_version(parsed.everyday.json);
+  apply_log_options(*app.get_subcommands().front(), parsed.log);
+  say_command(argc, argv);
   return run();
 }
 

@@ -8,6 +8,10 @@
 #include "tool/report/studio.h"
 #include "tool/stages/sheet_stage.h"
 
+namespace CLI {
+class App;
+}
+
 namespace softreel {
 
 /// Simulates and renders a shot: pictures, and a movie of all its frames.
@@ -118,5 +122,43 @@ struct BenchCommandOptions {
 
 /// Starts softreel_bench, which rivals' libraries are linked to and this program is not; returns its exit status.
 int run_bench(const BenchCommandOptions& options);
+
+struct NewOptions {
+  std::string mesh, output;  ///< output: the shot; empty: named after the mesh; "-": standard output
+  std::string material, like, up;
+  std::vector<std::string> pin_groups, pull_groups;
+  long tets = 0;
+  int threads = 0;
+  bool force = false, quiet = false;
+};
+
+/// Writes a commented shot of a mesh.
+int run_new(const NewOptions& options);
+
+struct ExplainOptions {
+  std::string field, shot;
+  std::vector<std::string> sets;
+  bool json = false;
+};
+
+/// Says what a field or a topic means, and what a shot says of the field; without a field, what there is to ask.
+int run_explain(const ExplainOptions& options);
+
+/// Prints the reference of all fields, or explains one.
+int run_fields(const std::string& path);
+
+struct CompletionOptions {
+  std::string shell;              ///< bash | zsh | fish | json
+  std::string list, field, shot;  ///< what the scripts ask while a line is typed
+};
+
+/// Prints the completion of a shell from the table of commands.
+int run_completion(const CLI::App& app, const CompletionOptions& options);
+
+/// Prints the manual page from the table of commands.
+int run_man(const CLI::App& app);
+
+/// Prints the version, the libraries, the parts and the machine.
+int run_version(bool json);
 
 }  // namespace softreel

@@ -66,7 +66,14 @@ Session::Session(const ShotOptions& options, Cache::Storing storing)
           storing, log_),
       context_{threads_, log_, times_, cache_, cancellation()},
       context_beside_{threads_beside_, log_, times_, cache_, cancellation()},
-      start_(std::chrono::steady_clock::now()) {}
+      start_(std::chrono::steady_clock::now()) {
+  console_.debug(fmt::format("{}: frames {} to {}, {} bodies, {} materials, {} lights", shot_.path, frames_.first,
+                             frames_.last, shot_.bodies.size(), shot_.materials.size(), shot_.lights.size()));
+  for (const std::string& set : options_.sets) console_.debug("--set " + set);
+  for (const BodySettings& body : shot_.bodies) console_.debug(fmt::format("body {}: {}", body.name, body.mesh));
+  console_.debug(fmt::format("output to {}, results kept in {}, {} threads", shot_.output.directory, cache_.folder(),
+                             threads_.count()));
+}
 
 std::vector<CacheItem> Session::items(ShotRun& run, Outputs& outputs) {
   const ShotSettings& settings = run.shot().settings;
@@ -115,6 +122,8 @@ RunReport Session::report(const std::string& command, const ShotRun& run) const 
 
 void Session::finish(const RunReport& report) {
   console_.end();
+  for (const auto& [stage, entry] : report.stages)
+    console_.debug(fmt::format("stage {}: {:.3f} s in {} calls", stage, entry.seconds, entry.calls));
   if (const double limit = cache_limit(); limit > 0 && cache_.stored_bytes() > 0) {
     cut_cache(cache_, limit);
     if (const double bytes = cache_size(cache_); bytes > limit)

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "tool/report/log_file.h"
+
 namespace softreel {
 
 Console::Console(Verbosity verbosity, bool is_terminal) : verbosity_(verbosity), is_terminal_(is_terminal) {}
@@ -25,14 +27,26 @@ void Console::print(const std::string& line) {
   std::fflush(stderr);
 }
 
+bool Console::shows_info() const {
+  return verbosity_ == Verbosity::Normal && shows(LogLevel::Info);
+}
+
+void Console::debug(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  log_file().add(LogLevel::Debug, line);
+  if (shows(LogLevel::Debug)) print(line);
+}
+
 void Console::info(const std::string& line) {
   const std::lock_guard lock(mutex_);
-  if (verbosity_ == Verbosity::Normal) print(line);
+  log_file().add(LogLevel::Info, line);
+  if (shows_info()) print(line);
 }
 
 void Console::warn(const std::string& line) {
   const std::lock_guard lock(mutex_);
-  print("warning: " + line);
+  log_file().add(LogLevel::Warning, line);
+  if (shows(LogLevel::Warning)) print("warning: " + line);
 }
 
 void Console::begin(const std::string& label, int total) {
@@ -50,7 +64,7 @@ std::string Console::time_left(int done) const {
 
 void Console::advance(int done, const std::string& note) {
   const std::lock_guard lock(mutex_);
-  if (verbosity_ == Verbosity::Quiet) return;
+  if (!shows_info()) return;
   const std::string left = time_left(done);
   if (is_terminal_) {
     constexpr int kWidth = 30;

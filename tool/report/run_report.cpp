@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tool/report/console.h"
+#include "tool/report/version.h"
 #include "tool/stages/json_text.h"
 #include "tool/stages/stage_names.h"
 
@@ -242,11 +243,6 @@ std::string to_json(const RunReport& report) {
   for (const auto& [name, entry] : report.stages)
     json["stages"][name] = {{"seconds", entry.seconds}, {"calls", entry.calls}};
   return json_text(json);
-}
-
-std::string version_text() {
-  return fmt::format("softreel {} (g++ {}, Eigen {}.{}.{})", SOFTREEL_VERSION, __VERSION__, EIGEN_WORLD_VERSION,
-                     EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
 }
 
 }  // namespace softreel

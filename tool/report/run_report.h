@@ -47,7 +47,4 @@ std::vector<std::string> skipped_lines(const RunReport& report);
 std::string to_text(const RunReport& report);
 std::string to_json(const RunReport& report);
 
-/// "softreel VERSION" and the versions of what it was built with, for reports and --version.
-std::string version_text();
-
 }  // namespace softreel

@@ -37,13 +37,6 @@ const FieldText* find_exactly(const std::string& path) {
   return nullptr;
 }
 
-const FieldText* find_text(const std::string& path) {
-  const std::string plain = without_positions(path);
-  if (plain.rfind("body.", 0) == 0)  // body.FIELD: of the only body
-    if (const FieldText* text = find_exactly("body.*." + plain.substr(5))) return text;
-  return find_exactly(with_star(plain));
-}
-
 /// The heading of a table as a file spells it: "[[body.NAME.pin]]".
 std::string heading(const FieldText& table) {
   std::string path = table.path;
@@ -116,8 +109,15 @@ std::vector<std::string> field_paths() {
   return paths;
 }
 
+const FieldText* find_field(const std::string& path) {
+  const std::string plain = without_positions(path);
+  if (plain.rfind("body.", 0) == 0)  // body.FIELD: of the only body
+    if (const FieldText* text = find_exactly("body.*." + plain.substr(5))) return text;
+  return find_exactly(with_star(plain));
+}
+
 std::string explain_field(const std::string& path) {
-  const FieldText* text = find_text(path);
+  const FieldText* text = find_field(path);
   if (text == nullptr) {
     std::vector<std::string> known;
     for (const FieldText& one : field_texts()) known.push_back(without_positions(one.path));

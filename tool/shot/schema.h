@@ -30,6 +30,9 @@ std::string shot_reference();
 /// Paths of all fields that hold values, for completion.
 std::vector<std::string> field_paths();
 
+/// What the table says of a field, named as for explain_field; null if there is none.
+const FieldText* find_field(const std::string& path);
+
 /// What one field is for, on a few lines. Takes a path of the table or one of a shot: "body.*.tets", "body.tets",
 /// "body.creature.pin[0].keys[1].translate", "camera". Throws input_error for an unknown path, naming the nearest.
 std::string explain_field(const std::string& path);

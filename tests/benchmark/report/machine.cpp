@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
-#include "tool/report/run_report.h"
+#include "tool/report/version.h"
 #include "tool/stages/process.h"
 
 namespace softreel::bench {

@@ -40,10 +40,11 @@ struct Mapped {
 };
 
 /// Runs softreel with `arguments` and collects what it mapped, the programs that it starts (ffmpeg) included.
-Mapped run_traced(const std::string& arguments) {
+Mapped run_traced(const std::string& arguments, const std::string& environment = "") {
   const std::string folder = new_folder("loader");
   Mapped mapped;
-  mapped.outcome = run(fmt::format("export LD_DEBUG=files LD_DEBUG_OUTPUT={}/log; softreel {}", folder, arguments));
+  mapped.outcome =
+      run(fmt::format("export {} LD_DEBUG=files LD_DEBUG_OUTPUT={}/log; softreel {}", environment, folder, arguments));
   for (const std::string& file : files_under(folder)) add_mapped(read_text(folder + "/" + file), mapped.names);
   EXPECT_TRUE(mapped.has("libstdc++")) << "the loader said nothing";
   return mapped;
@@ -52,11 +53,17 @@ Mapped run_traced(const std::string& arguments) {
 using Names = std::set<std::string>;
 
 TEST(Parts, NoneIsLoadedForHelpAndFields) {
-  for (const char* arguments : {"--help", "render --help", "fields"}) {
+  for (const char* arguments : {"--help", "render --help", "fields", "explain tets", "completion bash"}) {
     const Mapped mapped = run_traced(arguments);
     EXPECT_EQ(mapped.outcome.status, 0) << arguments << mapped.outcome.err;
     EXPECT_EQ(mapped.heavy(), Names()) << arguments;
   }
+}
+
+TEST(Parts, NoneIsLoadedToSayWhichThereAre) {
+  const Mapped mapped = run_traced("--version", "PATH=/nowhere");  // ffmpeg would load its own
+  EXPECT_EQ(mapped.outcome.status, 0) << mapped.outcome.err;
+  EXPECT_EQ(mapped.heavy(), Names());
 }
 
 TEST(Parts, NoneIsLoadedToCheckAShotOfAnObjOrItsStatus) {
