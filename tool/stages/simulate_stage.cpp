@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "core/elasticity/mass.h"
 #include "tool/stages/bytes.h"
 #include "tool/stages/simulate_key.h"
 #include "tool/stages/stage_names.h"
@@ -26,6 +27,7 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.troubles);
   out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
   for (const auto& step : frame.earlier_steps) out.put_array(step);
+  if (frame.energy) out.put(*frame.energy);
   return out.take();
 }
 
@@ -44,6 +46,7 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
   frame.state.troubles = in.get_array<ElementTrouble>();
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
+  if (!in.at_end()) frame.energy = in.get<FrameEnergy>();
   return frame;
 }
 
@@ -138,13 +141,19 @@ bool BodySimulation::starts_from_rest(int frame) const {
   return independent || frame == first_simulated_frame(shot_);
 }
 
+/// frame_ is the body at `frame` now.
+void BodySimulation::note(int frame) {
+  frame_number_ = frame;
+  touched_[static_cast<std::size_t>(frame - first_simulated_frame(shot_))] = true;
+  if (frame_.energy) energies_[frame] = *frame_.energy;
+}
+
 bool BodySimulation::load(int frame) {
   const auto stored = context_.cache.load(kSimulationStage, frame_key(frame));
   if (!stored) return false;
   frame_ = unpack(stored->bytes);
-  frame_number_ = frame;
   simulator_holds_frame_ = false;
-  touched_[static_cast<std::size_t>(frame - first_simulated_frame(shot_))] = true;
+  note(frame);
   counts_.loaded += 1;
   counts_.saved_seconds += stored->seconds;
   return true;
@@ -170,8 +179,7 @@ void BodySimulation::produce(int frame) {
     if (made.recovering_elements > 0) counts_.recoveries.push_back({settings_.name, frame, made.recovering_elements});
   }
   frame_ = std::move(made);
-  frame_number_ = frame;
-  touched_[static_cast<std::size_t>(frame - first_simulated_frame(shot_))] = true;
+  note(frame);
 }
 
 const BodyFrame& BodySimulation::at(int frame) {
@@ -217,6 +225,21 @@ SimulationWork BodySimulation::find_equilibrium(int frame) {
   return {report.solve.iterations, report.nonlinear_iterations, 0, 0, 0, 0, 0, 0};
 }
 
+/// Of the simulator's state: a pass over the elements, a small part of what a step takes.
+FrameEnergy BodySimulation::measured_energy() {
+  const ScopedStage stage(context_.times, "simulate/measure");
+  const StateMeasures measures = simulator_->measure();
+  if (!rest_potential_) {
+    const BodyModel& model = simulator_->model();
+    const NodalMasses masses = lump_masses(model.mesh, model.materials);
+    double potential = 0;
+    for (std::size_t i = 0; i < masses.mass.size(); ++i)
+      potential -= masses.mass[i] * model.gravity.dot(model.mesh.nodes[i]);
+    rest_potential_ = potential;
+  }
+  return {measures.kinetic_energy, measures.elastic_energy, measures.potential_energy - *rest_potential_};
+}
+
 BodyFrame BodySimulation::simulated(int frame) {
   context_.stop_if_cancelled();
   filled();
@@ -228,12 +251,14 @@ BodyFrame BodySimulation::simulated(int frame) {
     simulator_holds_frame_ = false;
   } else if (is_static && constraints_key(constraints_, frame) == constraints_key(constraints_, frame - 1)) {
     result.state = frame_.state;
+    result.energy = frame_.energy;
     result.work.frames_unchanged = 1;
     return result;
   }
   const bool is_start = frame == first_simulated_frame(shot_);
   if (is_start && !is_static && settings.start == StartState::Rest) {
     result.state = frame_.state;
+    result.energy = FrameEnergy();
     return result;
   }
   if (is_static || is_start)
@@ -241,6 +266,7 @@ BodyFrame BodySimulation::simulated(int frame) {
   else
     advance(frame, result);
   result.state = simulator_->state();
+  result.energy = measured_energy();
   simulator_holds_frame_ = true;
   return result;
 }
