@@ -28,6 +28,7 @@ constexpr double kPathsPerSecond = 2e6;        ///< two threads
 constexpr double kBytesPerTet = 1200;          ///< matrix, hierarchy, state
 constexpr double kBytesPerTriangle = 700;      ///< surface, normals, trees
 constexpr double kBytesPerPixel = 48;
+constexpr double kBytesOfProgram = 2.5e7;  ///< code and libraries
 /// Of graded bodies, per square of the wanted distance on the sides of the body's box.
 constexpr double kTetsPerSquaredError = 0.3;
 
@@ -91,7 +92,8 @@ Plan make_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan
   }
   const double pixels = static_cast<double>(shot.render.params.width) * shot.render.params.height;
   plan.render_seconds = plan.traced * pixels * shot.render.params.samples / (kPathsPerSecond * speed);
-  plan.bytes = plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle + pixels * kBytesPerPixel;
+  plan.bytes =
+      kBytesOfProgram + plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle + pixels * kBytesPerPixel;
   return plan;
 }
 

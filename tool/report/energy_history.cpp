@@ -6,7 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tool/stages/body_frame_bytes.h"
 #include "tool/stages/json_text.h"
+#include "tool/stages/stage_names.h"
 
 namespace softreel {
 namespace {
@@ -27,6 +29,27 @@ BodyEnergies body_from(const ordered_json& json) {
         {number_at(json, "kinetic", i), number_at(json, "elastic", i), number_at(json, "gravity", i)},
         json.at("keys").at(i).get<std::string>()};
   return body;
+}
+
+/// Stored frames are read for their energies up to so many bytes: a moment after a crash, not minutes.
+constexpr double kMostBytes = 1e9;
+
+/// Fills in what a run that was killed has left: frames in the cache that no report tells of.
+void read_stored(const ShotRun& run, std::size_t index, BodyEnergies& body) {
+  const Cache& cache = run.context().cache;
+  const BodySimulation& simulation = run.simulation(index);
+  const ShotSettings& settings = run.shot().settings;
+  double bytes = 0;
+  for (int frame = settings.first_frame; frame <= settings.last_frame && bytes < kMostBytes; ++frame) {
+    const StageKey& key = simulation.frame_key(frame);
+    if (body.frames.count(frame) > 0 || !cache.has(kSimulationStage, key)) continue;
+    std::error_code gone;
+    const auto size = std::filesystem::file_size(cache.path(kSimulationStage, key), gone);
+    bytes += gone ? 0 : static_cast<double>(size);
+    const std::optional<FrameEnergy> energy = stored_energy(cache, key);
+    if (!energy) return;  // an older softreel stored these: none of them will tell
+    body.frames[frame] = {*energy, key};
+  }
 }
 
 std::vector<BodyEnergies> energies_of_report(const std::string& path) {
@@ -56,6 +79,7 @@ std::vector<BodyEnergies> find_energies(const ShotRun& run, const std::string& e
     }
     for (const auto& [frame, energy] : simulation.energies())
       if (frame >= settings.first_frame) body.frames[frame] = {energy, simulation.frame_key(frame)};
+    read_stored(run, b, body);
     energies.push_back(std::move(body));
   }
   return energies;

@@ -6,49 +6,12 @@
 
 #include "core/base/check.h"
 #include "core/elasticity/mass.h"
-#include "tool/stages/bytes.h"
+#include "tool/stages/body_frame_bytes.h"
 #include "tool/stages/simulate_key.h"
 #include "tool/stages/stage_names.h"
 
 namespace softreel {
 namespace {
-
-Bytes pack(const BodyFrame& frame) {
-  ByteWriter out;
-  out.put_array(frame.state.positions);
-  out.put_array(frame.state.velocities);
-  out.put_array(frame.state.rotations);
-  out.put_array(frame.state.previous_positions);
-  out.put_array(frame.state.previous_velocities);
-  out.put_array(frame.state.accelerations);
-  out.put_array(frame.state.previous_accelerations);
-  out.put(frame.state.previous_error);
-  out.put(frame.state.previous_seconds);
-  out.put_array(frame.state.troubles);
-  out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
-  for (const auto& step : frame.earlier_steps) out.put_array(step);
-  if (frame.energy) out.put(*frame.energy);
-  return out.take();
-}
-
-BodyFrame unpack(std::span<const std::uint8_t> bytes) {
-  ByteReader in(bytes);
-  BodyFrame frame;
-  frame.state.positions = in.get_array<Vec3>();
-  frame.state.velocities = in.get_array<Vec3>();
-  frame.state.rotations = in.get_array<Quaternion>();
-  frame.state.previous_positions = in.get_array<Vec3>();
-  frame.state.previous_velocities = in.get_array<Vec3>();
-  frame.state.accelerations = in.get_array<Vec3>();
-  frame.state.previous_accelerations = in.get_array<Vec3>();
-  frame.state.previous_error = in.get<double>();
-  frame.state.previous_seconds = in.get<double>();
-  frame.state.troubles = in.get_array<ElementTrouble>();
-  frame.earlier_steps.resize(in.get<std::uint64_t>());
-  for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
-  if (!in.at_end()) frame.energy = in.get<FrameEnergy>();
-  return frame;
-}
 
 StageKey materials_key(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded) {
   KeyHasher key("materials");
@@ -151,7 +114,7 @@ void BodySimulation::note(int frame) {
 bool BodySimulation::load(int frame) {
   const auto stored = context_.cache.load(kSimulationStage, frame_key(frame));
   if (!stored) return false;
-  frame_ = unpack(stored->bytes);
+  frame_ = unpack_body_frame(stored->bytes);
   simulator_holds_frame_ = false;
   note(frame);
   counts_.loaded += 1;
@@ -169,7 +132,7 @@ void BodySimulation::produce(int frame) {
   const Cache::Produced produced = context_.cache.produce(
       kSimulationStage, frame_key(frame), [&] { context_.stop_if_cancelled(); }, simulate);
   if (produced.from_cache) {
-    made = unpack(produced.bytes);
+    made = unpack_body_frame(produced.bytes);
     simulator_holds_frame_ = false;
     counts_.loaded += 1;
     counts_.saved_seconds += produced.seconds;

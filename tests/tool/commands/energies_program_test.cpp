@@ -77,6 +77,8 @@ TEST(Energies, AreKeptFromRunToRunWhileTheirFramesStand) {
   EXPECT_EQ(continued.kinetic, whole.kinetic);
   EXPECT_EQ(continued.elastic, whole.elastic);
   EXPECT_EQ(simulated(folder, "").kinetic, whole.kinetic) << "and where nothing is simulated at all";
+  run(fmt::format("rm {0}/out/ball.report.json", folder));
+  EXPECT_EQ(simulated(folder, "").kinetic, whole.kinetic) << "nor if a killed run left no report";
   // Another material: none of the old numbers may stand beside the new ones.
   const Energies changed = simulated(folder, "--frames 1-3 --set material.soft.youngs_modulus=1e5");
   EXPECT_EQ(changed.frames, (std::vector<int>{1, 2, 3}));
