@@ -70,8 +70,19 @@ std::string card(const BatchJob& job, const JobResult& result, const JobPictures
           : image_tag(pictures.cover, fmt::format("{}, frame {}", job.label(), pictures.cover_frame), "");
   return fmt::format("<a class=\"card{}\" href=\"#job{}\">{}<div class=\"words\"><b>{}</b>{}<br>{}</div></a>\n",
                      result.state == JobState::Failed ? " failed" : "", index, picture, markup_text(job.name),
-                     job.variant.empty() ? "" : "<span class=\"faint\">" + markup_text(job.variant) + "</span><br>",
-                     state_span(result));
+                     variant_lines(job), state_span(result));
+}
+
+/// What failed, before everything else: a line each that leads to the whole message.
+std::string failures(const BatchResult& batch) {
+  std::string html;
+  for (std::size_t i = 0; i < batch.jobs.size(); ++i) {
+    const JobResult& result = batch.results[i];
+    if (result.state != JobState::Failed) continue;
+    html += fmt::format("<li><a href=\"#job{}\">{}</a>: {}</li>\n", i, markup_text(batch.jobs[i].label()),
+                        markup_text(result.message.substr(0, result.message.find('\n'))));
+  }
+  return html.empty() ? html : "<ul class=\"failures\">\n" + html + "</ul>\n";
 }
 
 std::string duration_or_dash(double seconds) {
@@ -165,7 +176,7 @@ std::string batch_page(const BatchResult& batch, const std::vector<JobPictures>&
                       markup_text(when), markup_text(host), format_duration(batch.seconds), batch.jobs_at_one_time,
                       batch.threads, batch.bytes < 1e15 ? fmt::format(", {} of memory", format_bytes(batch.bytes)) : "",
                       markup_text(version_text()));
-  html += "<pre>" + markup_text(batch.command) + "</pre>\n<div class=\"cards\">\n";
+  html += "<pre>" + markup_text(batch.command) + "</pre>\n" + failures(batch) + "<div class=\"cards\">\n";
   for (std::size_t i = 0; i < batch.jobs.size(); ++i) html += card(batch.jobs[i], batch.results[i], pictures[i], i);
   html += "</div>\n" + table(batch);
   for (std::size_t i = 0; i < batch.jobs.size(); ++i) html += section(batch.jobs[i], batch.results[i], pictures[i], i);

@@ -25,6 +25,8 @@ pre { background: var(--panel); border-radius: 4px; padding: .6em .8em; margin: 
 pre.bad { background: var(--bad-back); border-left: 3px solid var(--bad); }
 .state { font-weight: 600; white-space: nowrap; } .good { color: var(--good); } .bad { color: var(--bad); }
 pre.bad { color: var(--text); } .idle { color: var(--idle); }
+.failures { background: var(--bad-back); border-left: 3px solid var(--bad); margin: .8em 0; padding: .5em .8em .5em 1.6em;
+  border-radius: 4px; overflow-wrap: anywhere; }
 .cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(200px, 1fr)); gap: 14px; margin: 1.4em 0; }
 .card { text-decoration: none; background: var(--panel); border-radius: 6px; overflow: hidden; border: 1px solid
   var(--line); display: flex; flex-direction: column; }
