@@ -27,16 +27,17 @@ constexpr const char* kFooter =
 constexpr const char* kCommandFooter =
     "Fields: softreel explain FIELD. Exit status: 0 done; 1 the work failed; 2 the input is wrong; 130 after Ctrl-C.";
 
-/// Accepts finite numbers above 0; CLI11's own check lets NaN pass and prints its bounds with 300 digits.
-CLI::Validator length() {
-  return {[](std::string& text) {
+/// Accepts finite numbers above 0, of a length or of `what` else; CLI11's own check lets NaN pass and prints its bounds
+/// with 300 digits.
+CLI::Validator length(const std::string& what = "length") {
+  return {[what](std::string& text) {
             double value = 0;
             const char* const end = text.data() + text.size();
             const auto [stopped, code] = std::from_chars(text.data(), end, value);
             const bool is_length = code == std::errc{} && stopped == end && std::isfinite(value) && value > 0;
-            return is_length ? std::string() : fmt::format("{} is no length. Accepted: a number above 0.", text);
+            return is_length ? std::string() : fmt::format("{} is no {}. Accepted: a number above 0.", text, what);
           },
-          "", "length"};
+          "", what};
 }
 
 /// Where results lie, and with which fields.
@@ -139,6 +140,50 @@ void add_preview_command(CLI::App& app, Parsed& parsed, Runner& run) {
   preview->callback([&] { run = [&parsed] { return run_preview(parsed.preview); }; });
 }
 
+void add_batch_command(CLI::App& app, Parsed& parsed, Runner& run) {
+  CLI::App* batch = app.add_subcommand(
+      "batch",
+      "render several shots, and variants of them, each in a process of its own; one that fails stops no other");
+  BatchOptions& options = parsed.batch;
+  batch->add_option("shots", options.shots, "shot files (TOML)")->required()->option_text("SHOT ...");
+  add_run_options(*batch, options.shot);
+  batch->get_option("--threads")->description("threads of all running jobs together, 1 to 1024 [all processors]");
+  batch->get_option("--json")->description("print what became of the jobs as JSON on standard output");
+  batch
+      ->add_option("--sweep", options.sweeps,
+                   "render a variant for each value, e.g. body.tets=5000,20000; A..B/N: N numbers from A to B, "
+                   "A..B/Nlog: by equal factors; several: all combinations (repeatable)")
+      ->option_text("PATH=VALUES")
+      ->expected(1)
+      ->take_all()
+      ->group("Shot");
+  batch
+      ->add_option("--report", options.report,
+                   "folder of batch.html, batch.junit.xml and batch.json [where the files go]")
+      ->option_text("DIR")
+      ->group("Files");
+  batch->add_option("--jobs", options.jobs, "jobs at one time, 1 to 256 [by processors and memory]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 256))
+      ->group("Running");
+  batch
+      ->add_option("--memory", options.memory_gb,
+                   "memory that running jobs may be expected to need [what is available]")
+      ->option_text("GB")
+      ->check(length("amount of memory"))
+      ->group("Running");
+  batch->add_option("--retry", options.retries, "times to try again a job that crashed or was killed, 0 to 100 [0]")
+      ->option_text("N")
+      ->check(CLI::Range(0, 100))
+      ->group("Running");
+  CLI::Option* fail_fast =
+      batch->add_flag("--fail-fast", options.fail_fast, "start no more jobs once one has failed")->group("Running");
+  batch->add_flag("--keep-going", options.keep_going, "run all jobs whatever fails (this is the default)")
+      ->excludes(fail_fast)
+      ->group("Running");
+  batch->callback([&] { run = [&parsed] { return run_batch(parsed.batch); }; });
+}
+
 void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   CLI::App* render = app.add_subcommand("render", "simulate a shot and trace its pictures and movie");
   add_shot_options(*render, parsed.shot);
@@ -192,10 +237,7 @@ void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
       ->group("Running");
   golden->callback([&] { run = [&parsed] { return run_golden(parsed.golden); }; });
 
-  CLI::App* batch = app.add_subcommand("batch", "render several shots; one that fails stops no other");
-  batch->add_option("shots", parsed.batch.shots, "shot files (TOML)")->required()->option_text("SHOT ...");
-  add_run_options(*batch, parsed.batch.shot);
-  batch->callback([&] { run = [&parsed] { return run_batch(parsed.batch); }; });
+  add_batch_command(app, parsed, run);
 }
 
 void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {

@@ -64,11 +64,17 @@ struct GoldenOptions {
 int run_golden(const GoldenOptions& options);
 
 struct BatchOptions {
-  ShotOptions shot;  ///< its `shot` is not used
+  ShotOptions shot;  ///< its `shot` is not used; its threads are those of all running jobs together
   std::vector<std::string> shots;
+  std::vector<std::string> sweeps;             ///< "path=value,value,..."
+  std::string report;                          ///< folder; empty: where the shots' files go
+  int jobs = 0;                                ///< at one time; 0: by processors and memory
+  double memory_gb = 0;                        ///< of all running jobs together; 0: what the machine has left
+  int retries = 0;                             ///< of a job that crashed
+  bool fail_fast = false, keep_going = false;  ///< the second is the default, and may be said
 };
 
-/// Renders several shots, each in a process of its own; exit status 1 if one failed.
+/// Renders several shots, and variants of them, each in a process of its own; exit status 1 if one failed.
 int run_batch(const BatchOptions& options);
 
 /// Reads a shot, its meshes and selections, and says what they hold.

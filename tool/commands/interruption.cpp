@@ -16,6 +16,13 @@ namespace {
 
 /// A second, less what ending takes.
 constexpr timespec kPatience{0, 700'000'000};
+/// Children of the same program take a second, and have two.
+constexpr timespec kPatienceWithChildren{4, 0};
+
+std::atomic<bool>& has_children() {
+  static std::atomic<bool> children{false};
+  return children;
+}
 
 sigset_t watched_signals() {
   sigset_t signals;
@@ -31,7 +38,8 @@ void watch() {
   if (sigwait(&signals, &signal) != 0) return;
   cancellation() = true;
   end_processes();
-  while (sigtimedwait(&signals, nullptr, &kPatience) < 0 && errno == EINTR) continue;
+  const timespec patience = has_children() ? kPatienceWithChildren : kPatience;
+  while (sigtimedwait(&signals, nullptr, &patience) < 0 && errno == EINTR) continue;
   // Still here: time is up, or a second signal came.
   std::fputs("\nsoftreel: Interrupted; what is finished is kept. Run the same command again to go on.\n", stderr);
   std::fflush(stderr);
@@ -43,6 +51,10 @@ void watch() {
 std::atomic<bool>& cancellation() {
   static std::atomic<bool> cancelled{false};
   return cancelled;
+}
+
+void wait_for_children_when_interrupted() {
+  has_children() = true;
 }
 
 void watch_for_interruption() {

@@ -13,4 +13,8 @@ std::atomic<bool>& cancellation();
 /// second signal ends the program at once. Called once, before other threads are made.
 void watch_for_interruption();
 
+/// This command runs others of the same program, and reports what became of them: once interrupted it is given the time
+/// to see them end, a few seconds at most.
+void wait_for_children_when_interrupted();
+
 }  // namespace softreel

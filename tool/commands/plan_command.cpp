@@ -1,11 +1,15 @@
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <set>
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "tool/commands/commands.h"
+#include "tool/stages/json_text.h"
+#include "tool/stages/movie_stage.h"
 #include "tool/stages/picture_stage.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
@@ -24,12 +28,15 @@ constexpr double kPathsPerSecond = 2e6;        ///< two threads
 constexpr double kBytesPerTet = 1200;          ///< matrix, hierarchy, state
 constexpr double kBytesPerTriangle = 700;      ///< surface, normals, trees
 constexpr double kBytesPerPixel = 48;
+constexpr double kBytesOfProgram = 2.5e7;  ///< code and libraries
 /// Of graded bodies, per square of the wanted distance on the sides of the body's box.
 constexpr double kTetsPerSquaredError = 0.3;
 
 struct Plan {
   double tets = 0, triangles = 0;
   int simulated = 0, traced = 0;  ///< body frames and pictures that are not stored
+  int kept = 0;                   ///< pictures that lie in the output folder already
+  bool complete = false;          ///< nothing is to be done
   double fill_seconds = 0, simulate_seconds = 0, render_seconds = 0, bytes = 0;
 };
 
@@ -62,9 +69,13 @@ Plan make_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan
   const Shot& shot = run.shot();
   const double speed = threads / 2.0;
   std::vector<int> needed;
-  for (int frame = frames.first; frame <= frames.last; ++frame)
-    if (!pictures.is_kept(frame) && !pictures.is_stored(frame)) needed.push_back(frame);
   Plan plan;
+  for (int frame = frames.first; frame <= frames.last; ++frame) {
+    if (pictures.is_kept(frame))
+      plan.kept += 1;
+    else if (!pictures.is_stored(frame))
+      needed.push_back(frame);
+  }
   plan.traced = static_cast<int>(needed.size());
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const LoadedBody& loaded = run.loaded(b);
@@ -81,8 +92,48 @@ Plan make_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan
   }
   const double pixels = static_cast<double>(shot.render.params.width) * shot.render.params.height;
   plan.render_seconds = plan.traced * pixels * shot.render.params.samples / (kPathsPerSecond * speed);
-  plan.bytes = plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle + pixels * kBytesPerPixel;
+  plan.bytes =
+      kBytesOfProgram + plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle + pixels * kBytesPerPixel;
   return plan;
+}
+
+/// Whether movie and contact sheet are there as far as the shot wants them, and the report.
+bool has_the_rest(const Session& session, const Outputs& outputs) {
+  const Shot& shot = session.shot();
+  const FrameSpan& frames = session.frames();
+  const bool whole = frames.first == shot.settings.first_frame && frames.last == shot.settings.last_frame;
+  if (shot.output.movie && shot.output.png && whole && frames.count() > 1 &&
+      !is_movie_done(shot, frames.first, frames.last, outputs))
+    return false;
+  const SheetOptions sheet;
+  if (shot.output.contact_sheet && shot.output.png &&
+      !is_sheet_done(shot, sheet_frames(frames.first, frames.last, sheet.count), sheet.columns, outputs))
+    return false;
+  std::error_code none;
+  return std::filesystem::is_regular_file(outputs.path("report.json"), none);
+}
+
+void print_json(const Session& session, const Plan& plan, std::size_t bodies) {
+  const Shot& shot = session.shot();
+  const FrameSpan& frames = session.frames();
+  const int body_frames = static_cast<int>(bodies) * (frames.last - first_simulated_frame(shot) + 1);
+  const nlohmann::ordered_json json{{"command", "plan"},
+                                    {"shot", shot.path},
+                                    {"name", shot.settings.name},
+                                    {"output", shot.output.directory},
+                                    {"frames", {frames.first, frames.last}},
+                                    {"complete", plan.complete},
+                                    {"tetrahedra", plan.tets},
+                                    {"triangles", plan.triangles},
+                                    {"simulate", {{"missing", plan.simulated}, {"of", body_frames}}},
+                                    {"trace", {{"missing", plan.traced}, {"there", plan.kept}, {"of", frames.count()}}},
+                                    {"expected",
+                                     {{"bytes", plan.bytes},
+                                      {"seconds", plan.fill_seconds + plan.simulate_seconds + plan.render_seconds},
+                                      {"fill_seconds", plan.fill_seconds},
+                                      {"simulate_seconds", plan.simulate_seconds},
+                                      {"render_seconds", plan.render_seconds}}}};
+  std::printf("%s\n", json_text(json).c_str());
 }
 
 }  // namespace
@@ -97,7 +148,12 @@ int run_plan(const ShotOptions& options) {
   const SceneStage scenes(run);
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
   const PictureStage pictures(scenes, shot, outputs, session.context());
-  const Plan plan = make_plan(run, pictures, frames, session.context().threads.count());
+  Plan plan = make_plan(run, pictures, frames, session.context().threads.count());
+  plan.complete = plan.kept == frames.count() && has_the_rest(session, outputs);
+  if (options.json) {
+    print_json(session, plan, run.body_count());
+    return 0;
+  }
   std::printf("%s: would do (nothing is written):\n", shot.settings.name.c_str());
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     if (shot.dial.is_on())

@@ -116,8 +116,13 @@ RunReport Session::report(const std::string& command, const ShotRun& run) const 
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   report.bodies = report_bodies(run);
   report.simulation = run.counts(frames_.last);
+  report.energies = find_energies(run, report_path());
   report.stages = times_.entries();
   return report;
+}
+
+std::string Session::report_path() const {
+  return (std::filesystem::path(shot_.output.directory) / (shot_.settings.name + ".report.json")).string();
 }
 
 void Session::finish(const RunReport& report) {
@@ -135,7 +140,7 @@ void Session::finish(const RunReport& report) {
   use_.reset();
   const std::filesystem::path folder(shot_.output.directory);
   write_file((folder / (shot_.settings.name + ".resolved.toml")).string(), to_toml(shot_));
-  write_file((folder / (shot_.settings.name + ".report.json")).string(), to_json(report) + "\n");
+  write_file(report_path(), to_json(report) + "\n");
   if (options_.json) {
     std::printf("%s\n", to_json(report).c_str());
   } else if (!options_.quiet) {

@@ -70,6 +70,8 @@ class Session {
   void finish(const RunReport& report);
 
  private:
+  std::string report_path() const;
+
   ShotOptions options_;
   Shot shot_;
   FrameSpan frames_;

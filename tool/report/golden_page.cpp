@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "render/image/flip.h"
+#include "tool/report/markup.h"
 #include "tool/stages/base64.h"
 
 namespace softreel {
@@ -34,26 +35,9 @@ input[type=range]:focus-visible { opacity: .4; }
   font-size: .85em; }
 )";
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string image_tag(const std::vector<std::uint8_t>& png, const std::string& name, const std::string& type = "") {
   return fmt::format("<img{} alt=\"{}\" src=\"data:image/png;base64,{}\">",
-                     type.empty() ? "" : " class=\"" + type + "\"", escaped(name), base64(png));
+                     type.empty() ? "" : " class=\"" + type + "\"", markup_text(name), base64(png));
 }
 
 /// The colours of the difference picture, as a gradient of CSS.
@@ -68,18 +52,18 @@ std::string gradient() {
 }
 
 std::string anchor(const GoldenPageFrame& frame) {
-  return fmt::format("{}-{}", escaped(frame.shot), frame.frame);
+  return fmt::format("{}-{}", markup_text(frame.shot), frame.frame);
 }
 
 std::string table(const std::vector<GoldenPageFrame>& frames) {
   std::string rows;
   for (const GoldenPageFrame& frame : frames) {
-    const std::string name = fmt::format("{}, frame {}", escaped(frame.shot), frame.frame);
-    rows +=
-        fmt::format("<tr><td>{}</td><td class=\"{}\">{}</td><td>{}{}</td></tr>\n",
-                    frame.changed ? fmt::format("<a href=\"#{}\">{}</a>", anchor(frame), name) : name,
-                    frame.changed ? "changed" : "same", frame.changed ? "changed" : "as before", escaped(frame.verdict),
-                    frame.cause.empty() ? "" : "<br><span class=\"cause\">" + escaped(frame.cause) + "</span>");
+    const std::string name = fmt::format("{}, frame {}", markup_text(frame.shot), frame.frame);
+    rows += fmt::format("<tr><td>{}</td><td class=\"{}\">{}</td><td>{}{}</td></tr>\n",
+                        frame.changed ? fmt::format("<a href=\"#{}\">{}</a>", anchor(frame), name) : name,
+                        frame.changed ? "changed" : "same", frame.changed ? "changed" : "as before",
+                        markup_text(frame.verdict),
+                        frame.cause.empty() ? "" : "<br><span class=\"cause\">" + markup_text(frame.cause) + "</span>");
   }
   return "<table><tr><th>frame</th><th>is</th><th>because</th></tr>\n" + rows + "</table>\n";
 }
@@ -87,7 +71,7 @@ std::string table(const std::vector<GoldenPageFrame>& frames) {
 std::string section(const GoldenPageFrame& frame) {
   std::string html =
       fmt::format("<h2 id=\"{}\">{}, frame {}</h2>\n<p>{}<br><span class=\"cause\">{}</span></p>\n", anchor(frame),
-                  escaped(frame.shot), frame.frame, escaped(frame.verdict), escaped(frame.cause));
+                  markup_text(frame.shot), frame.frame, markup_text(frame.verdict), markup_text(frame.cause));
   if (frame.golden.empty() || frame.difference.empty())
     return html + "<figure class=\"difference\">" + image_tag(frame.now, "now") +
            "<figcaption>the frame as it is now</figcaption></figure>\n";

@@ -232,6 +232,7 @@ std::string to_json(const RunReport& report) {
   for (const FrameRecovery& recovery : simulation.recoveries)
     json["simulation"]["recoveries"].push_back(
         {{"body", recovery.body}, {"frame", recovery.frame}, {"elements", recovery.elements}});
+  json["energies"] = nlohmann::ordered_json::parse(energies_to_json(report.energies));
   const PictureCounts& pictures = report.pictures;
   json["pictures"] = {{"traced", pictures.traced},       {"linked", pictures.linked},
                       {"developed", pictures.developed}, {"recalled", pictures.recalled},

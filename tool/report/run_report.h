@@ -8,6 +8,7 @@
 
 #include "core/base/timer.h"
 #include "core/multigrid/multigrid.h"
+#include "tool/report/energy_history.h"
 #include "tool/stages/frame_pipeline.h"
 #include "tool/stages/shot_run.h"
 
@@ -31,6 +32,7 @@ struct RunReport {
   double seconds = 0;
   std::vector<BodyReport> bodies;
   SimulationCounts simulation;
+  std::vector<BodyEnergies> energies;
   PictureCounts pictures;
   int files_written = 0, files_kept = 0;  ///< exported or previewed
   double files_saved_seconds = 0;         ///< what the kept ones took when they were made

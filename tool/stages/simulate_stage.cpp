@@ -5,47 +5,13 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
-#include "tool/stages/bytes.h"
+#include "core/elasticity/mass.h"
+#include "tool/stages/body_frame_bytes.h"
 #include "tool/stages/simulate_key.h"
 #include "tool/stages/stage_names.h"
 
 namespace softreel {
 namespace {
-
-Bytes pack(const BodyFrame& frame) {
-  ByteWriter out;
-  out.put_array(frame.state.positions);
-  out.put_array(frame.state.velocities);
-  out.put_array(frame.state.rotations);
-  out.put_array(frame.state.previous_positions);
-  out.put_array(frame.state.previous_velocities);
-  out.put_array(frame.state.accelerations);
-  out.put_array(frame.state.previous_accelerations);
-  out.put(frame.state.previous_error);
-  out.put(frame.state.previous_seconds);
-  out.put_array(frame.state.troubles);
-  out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
-  for (const auto& step : frame.earlier_steps) out.put_array(step);
-  return out.take();
-}
-
-BodyFrame unpack(std::span<const std::uint8_t> bytes) {
-  ByteReader in(bytes);
-  BodyFrame frame;
-  frame.state.positions = in.get_array<Vec3>();
-  frame.state.velocities = in.get_array<Vec3>();
-  frame.state.rotations = in.get_array<Quaternion>();
-  frame.state.previous_positions = in.get_array<Vec3>();
-  frame.state.previous_velocities = in.get_array<Vec3>();
-  frame.state.accelerations = in.get_array<Vec3>();
-  frame.state.previous_accelerations = in.get_array<Vec3>();
-  frame.state.previous_error = in.get<double>();
-  frame.state.previous_seconds = in.get<double>();
-  frame.state.troubles = in.get_array<ElementTrouble>();
-  frame.earlier_steps.resize(in.get<std::uint64_t>());
-  for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
-  return frame;
-}
 
 StageKey materials_key(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded) {
   KeyHasher key("materials");
@@ -138,13 +104,19 @@ bool BodySimulation::starts_from_rest(int frame) const {
   return independent || frame == first_simulated_frame(shot_);
 }
 
+/// frame_ is the body at `frame` now.
+void BodySimulation::note(int frame) {
+  frame_number_ = frame;
+  touched_[static_cast<std::size_t>(frame - first_simulated_frame(shot_))] = true;
+  if (frame_.energy) energies_[frame] = *frame_.energy;
+}
+
 bool BodySimulation::load(int frame) {
   const auto stored = context_.cache.load(kSimulationStage, frame_key(frame));
   if (!stored) return false;
-  frame_ = unpack(stored->bytes);
-  frame_number_ = frame;
+  frame_ = unpack_body_frame(stored->bytes);
   simulator_holds_frame_ = false;
-  touched_[static_cast<std::size_t>(frame - first_simulated_frame(shot_))] = true;
+  note(frame);
   counts_.loaded += 1;
   counts_.saved_seconds += stored->seconds;
   return true;
@@ -160,7 +132,7 @@ void BodySimulation::produce(int frame) {
   const Cache::Produced produced = context_.cache.produce(
       kSimulationStage, frame_key(frame), [&] { context_.stop_if_cancelled(); }, simulate);
   if (produced.from_cache) {
-    made = unpack(produced.bytes);
+    made = unpack_body_frame(produced.bytes);
     simulator_holds_frame_ = false;
     counts_.loaded += 1;
     counts_.saved_seconds += produced.seconds;
@@ -170,8 +142,7 @@ void BodySimulation::produce(int frame) {
     if (made.recovering_elements > 0) counts_.recoveries.push_back({settings_.name, frame, made.recovering_elements});
   }
   frame_ = std::move(made);
-  frame_number_ = frame;
-  touched_[static_cast<std::size_t>(frame - first_simulated_frame(shot_))] = true;
+  note(frame);
 }
 
 const BodyFrame& BodySimulation::at(int frame) {
@@ -217,6 +188,21 @@ SimulationWork BodySimulation::find_equilibrium(int frame) {
   return {report.solve.iterations, report.nonlinear_iterations, 0, 0, 0, 0, 0, 0};
 }
 
+/// Of the simulator's state: a pass over the elements, a small part of what a step takes.
+FrameEnergy BodySimulation::measured_energy() {
+  const ScopedStage stage(context_.times, "simulate/measure");
+  const StateMeasures measures = simulator_->measure();
+  if (!rest_potential_) {
+    const BodyModel& model = simulator_->model();
+    const NodalMasses masses = lump_masses(model.mesh, model.materials);
+    double potential = 0;
+    for (std::size_t i = 0; i < masses.mass.size(); ++i)
+      potential -= masses.mass[i] * model.gravity.dot(model.mesh.nodes[i]);
+    rest_potential_ = potential;
+  }
+  return {measures.kinetic_energy, measures.elastic_energy, measures.potential_energy - *rest_potential_};
+}
+
 BodyFrame BodySimulation::simulated(int frame) {
   context_.stop_if_cancelled();
   filled();
@@ -228,12 +214,14 @@ BodyFrame BodySimulation::simulated(int frame) {
     simulator_holds_frame_ = false;
   } else if (is_static && constraints_key(constraints_, frame) == constraints_key(constraints_, frame - 1)) {
     result.state = frame_.state;
+    result.energy = frame_.energy;
     result.work.frames_unchanged = 1;
     return result;
   }
   const bool is_start = frame == first_simulated_frame(shot_);
   if (is_start && !is_static && settings.start == StartState::Rest) {
     result.state = frame_.state;
+    result.energy = FrameEnergy();
     return result;
   }
   if (is_static || is_start)
@@ -241,6 +229,7 @@ BodyFrame BodySimulation::simulated(int frame) {
   else
     advance(frame, result);
   result.state = simulator_->state();
+  result.energy = measured_energy();
   simulator_holds_frame_ = true;
   return result;
 }

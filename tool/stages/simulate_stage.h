@@ -1,7 +1,9 @@
 /// One body through time: any frame, from the cache where it has it, simulated from the nearest stored one otherwise.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,12 +28,21 @@ struct SimulationWork {
   SimulationWork& operator+=(const SimulationWork& other);
 };
 
+/// Energies of a body at a frame, J. What pulls store is not in them.
+struct FrameEnergy {
+  double kinetic = 0;
+  double elastic = 0;  ///< of the corotated material
+  double gravity = 0;  ///< potential, against the body at rest
+  double total() const { return kinetic + elastic + gravity; }
+};
+
 /// One body at one frame.
 struct BodyFrame {
   SimulationState state;                         ///< at the frame
   std::vector<std::vector<Vec3>> earlier_steps;  ///< node positions after each sub-step of the frame but the last
   SimulationWork work;                           ///< of this run: nothing if from the cache
   Index recovering_elements = 0;                 ///< most in a step; 0 if from the cache
+  std::optional<FrameEnergy> energy;             ///< none if a softreel that did not measure it stored the frame
 };
 
 /// Recovery at work in a frame.
@@ -70,6 +81,8 @@ class BodySimulation {
 
   /// Frames up to `last` that were neither computed nor loaded count as not needed if they are stored.
   SimulationCounts counts(int last) const;
+  /// Energies at the frames that this run computed or loaded.
+  const std::map<int, FrameEnergy>& energies() const { return energies_; }
   /// Levels of the multigrid hierarchy; empty while no frame was computed.
   std::vector<LevelInfo> levels() const;
 
@@ -79,6 +92,8 @@ class BodySimulation {
   bool load(int frame);
   void produce(int frame);
   BodyFrame simulated(int frame);
+  FrameEnergy measured_energy();
+  void note(int frame);
   bool starts_from_rest(int frame) const;
   void advance(int frame, BodyFrame& result);
   SimulationWork find_equilibrium(int frame);
@@ -99,6 +114,8 @@ class BodySimulation {
   BodyFrame frame_;
   int frame_number_;  ///< of frame_; before the first simulated frame while there is none
   SimulationCounts counts_;
+  std::map<int, FrameEnergy> energies_;
+  std::optional<double> rest_potential_;  ///< of gravity, J; found when the first energy is measured
 };
 
 }  // namespace softreel

@@ -1,4 +1,4 @@
-/// Golden images, batches, exports, previews, plans and facts, through the built program.
+/// Golden images, exports, previews, plans and facts, through the built program.
 #include <cmath>
 #include <cstring>
 #include <sstream>
@@ -33,22 +33,6 @@ TEST(Golden, FailsOnChangeAndPassesOnTheSamePicture) {
   const Outcome resized = golden("--set render.width=32");
   EXPECT_EQ(resized.status, 1);
   EXPECT_NE(resized.err.find("32 x 36"), std::string::npos) << resized.err;
-}
-
-TEST(Batch, OneFailingShotStopsNoOther) {
-  const std::string folder = shot_folder("batch");
-  write_text(folder + "/bad.toml", sphere_shot("[rendr]\n"));
-  write_text(folder + "/second.toml", sphere_shot());
-  const Outcome outcome = run(fmt::format(
-      "softreel batch {0}/bad.toml {0}/shot.toml {0}/second.toml --output {0}/out --frames 1-2 --json --set "
-      "shot.name=ball",
-      folder));
-  EXPECT_EQ(outcome.status, 1);
-  const json report = json::parse(outcome.out);
-  EXPECT_EQ(report["shots"][0]["status"], 2);
-  EXPECT_EQ(report["shots"][1]["status"], 0);
-  EXPECT_EQ(report["shots"][2]["status"], 0);
-  EXPECT_TRUE(exists(folder + "/out/ball.0002.png"));
 }
 
 /// Vertex lines of an OBJ file as numbers.

@@ -1,0 +1,50 @@
+#include "tool/stages/body_frame_bytes.h"
+
+#include "tool/stages/bytes.h"
+#include "tool/stages/stage_names.h"
+
+namespace softreel {
+
+Bytes pack(const BodyFrame& frame) {
+  ByteWriter out;
+  out.put_array(frame.state.positions);
+  out.put_array(frame.state.velocities);
+  out.put_array(frame.state.rotations);
+  out.put_array(frame.state.previous_positions);
+  out.put_array(frame.state.previous_velocities);
+  out.put_array(frame.state.accelerations);
+  out.put_array(frame.state.previous_accelerations);
+  out.put(frame.state.previous_error);
+  out.put(frame.state.previous_seconds);
+  out.put_array(frame.state.troubles);
+  out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
+  for (const auto& step : frame.earlier_steps) out.put_array(step);
+  if (frame.energy) out.put(*frame.energy);
+  return out.take();
+}
+
+BodyFrame unpack_body_frame(std::span<const std::uint8_t> bytes) {
+  ByteReader in(bytes);
+  BodyFrame frame;
+  frame.state.positions = in.get_array<Vec3>();
+  frame.state.velocities = in.get_array<Vec3>();
+  frame.state.rotations = in.get_array<Quaternion>();
+  frame.state.previous_positions = in.get_array<Vec3>();
+  frame.state.previous_velocities = in.get_array<Vec3>();
+  frame.state.accelerations = in.get_array<Vec3>();
+  frame.state.previous_accelerations = in.get_array<Vec3>();
+  frame.state.previous_error = in.get<double>();
+  frame.state.previous_seconds = in.get<double>();
+  frame.state.troubles = in.get_array<ElementTrouble>();
+  frame.earlier_steps.resize(in.get<std::uint64_t>());
+  for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
+  if (!in.at_end()) frame.energy = in.get<FrameEnergy>();
+  return frame;
+}
+
+std::optional<FrameEnergy> stored_energy(const Cache& cache, const StageKey& frame_key) {
+  const auto stored = cache.load(kSimulationStage, frame_key);
+  return stored ? unpack_body_frame(stored->bytes).energy : std::nullopt;
+}
+
+}  // namespace softreel
