@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "tool/commands/commands.h"
+#include "tool/commands/plan_estimate.h"
 #include "tool/stages/picture_stage.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
@@ -125,6 +126,11 @@ int run_plan(const ShotOptions& options) {
               format_duration(plan.fill_seconds).c_str(), format_duration(plan.simulate_seconds).c_str(),
               format_duration(plan.render_seconds).c_str());
   return 0;
+}
+
+PlanEstimate estimate_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan& frames, int threads) {
+  const Plan plan = make_plan(run, pictures, frames, threads);
+  return {plan.bytes, plan.fill_seconds, plan.simulate_seconds, plan.render_seconds, plan.traced};
 }
 
 }  // namespace softreel

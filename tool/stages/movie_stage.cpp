@@ -76,6 +76,10 @@ std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, 
   return path;
 }
 
+bool is_movie_done(const Shot& shot, int first, int last, const Outputs& outputs) {
+  return outputs.is_done(outputs.path("mp4"), movie_key(shot, first, last, outputs));
+}
+
 bool is_movie_outdated(const Shot& shot, int first, int last, const Outputs& outputs) {
   const std::string path = outputs.path("mp4");
   return outputs.claimed_state(path, movie_key(shot, first, last, outputs)) == OutputState::Stale;

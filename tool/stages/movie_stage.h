@@ -13,6 +13,9 @@ namespace softreel {
 /// Returns its path. Throws work_error if ffmpeg is missing or fails, with what it said.
 std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, const RunContext& context);
 
+/// True if the movie is there, whole, and made of the frames as the manifest has them now.
+bool is_movie_done(const Shot& shot, int first, int last, const Outputs& outputs);
+
 /// True if a movie is there that was not made of the frames as the manifest has them now.
 bool is_movie_outdated(const Shot& shot, int first, int last, const Outputs& outputs);
 

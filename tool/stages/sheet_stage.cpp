@@ -58,6 +58,10 @@ std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int col
   return path;
 }
 
+bool is_sheet_done(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs) {
+  return outputs.is_done(outputs.path("sheet.png"), sheet_key(shot, frames, columns, outputs));
+}
+
 bool is_sheet_outdated(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs) {
   return outputs.claimed_state(outputs.path("sheet.png"), sheet_key(shot, frames, columns, outputs)) ==
          OutputState::Stale;

@@ -23,6 +23,9 @@ std::vector<int> sheet_frames(int first, int last, int count);
 std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int columns, Outputs& outputs,
                        const RunContext& context);
 
+/// True if the sheet is there, whole, and made of the frames as the manifest has them now.
+bool is_sheet_done(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs);
+
 /// True if a sheet is there that was not made of the frames as the manifest has them now.
 bool is_sheet_outdated(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs);
 
