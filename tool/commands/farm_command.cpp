@@ -234,6 +234,19 @@ class Watch {
   int missing_ = 0, running_ = 0, waiting_ = 0;
 };
 
+int wait_for(const Shots& shots, const FarmOptions& options, Console& console) {
+  for (const auto& shot : shots)
+    if (shot->record() && shot->record()->engine != "slurm")
+      throw input_error(
+          fmt::format("{}: --wait: who runs the template that was written for this shot is not known here.\n  Accepted "
+                      "for shots that "
+                      "were submitted to Slurm. softreel farm SHOT --status says what is there.",
+                      shot->site().shot));
+  Watch watch(shots, console);
+  watch.run();
+  return print_statuses(shots, watch.queue(), options.shot);
+}
+
 void require_sense(const FarmOptions& options) {
   if (options.wait && options.engine == "openjd")
     throw input_error(
@@ -252,18 +265,16 @@ int run_farm(const FarmOptions& options) {
   if (!options.settings.memory.empty()) parse_memory(options.settings.memory);
   if (!options.settings.time.empty()) parse_time(options.settings.time);
   const Shots shots = read_shots(options);
+  Console console(options.shot.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0);
   if (options.status) {
     for (const auto& shot : shots) require_record(*shot);
-    return print_statuses(shots, ask_queue(shots), options.shot);
+    return options.wait ? wait_for(shots, options, console) : print_statuses(shots, ask_queue(shots), options.shot);
   }
-  Console console(options.shot.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0);
   const std::optional<Queue> queue = options.shot.dry_run ? std::nullopt : ask_queue(shots);
   bool any = false;
   for (const auto& shot : shots) any = submit(*shot, options, queue, console) || any;
   if (!any || !options.wait || options.shot.dry_run) return 0;
-  Watch watch(shots, console);
-  watch.run();
-  return print_statuses(shots, watch.queue(), options.shot);
+  return wait_for(shots, options, console);
 }
 
 }  // namespace softreel

@@ -93,8 +93,8 @@ void add_farm_command(CLI::App& app, FarmOptions& options, std::function<int()>&
       farm->add_flag("--retry", options.retry, "submit again what is missing and no task in the queue makes")
           ->excludes(status)
           ->group("Running");
-  farm->add_flag("--wait", options.wait, "wait until all tasks are done or nothing goes on, with progress")
-      ->excludes(status)
+  farm->add_flag("--wait", options.wait,
+                 "wait until all tasks are done or nothing goes on, with progress; with --status submit nothing")
       ->group("Running");
   farm->add_flag("--dry-run", options.shot.dry_run, "print what would be submitted, scripts included; do nothing")
       ->excludes(status)
