@@ -62,8 +62,9 @@ std::string counts_text(const std::vector<TaskStatus>& statuses, FarmStep step) 
 }
 
 std::string shown_task(const SubmittedTask& task) {
-  return task.step == FarmStep::Frames ? fmt::format("frames {}-{}", task.frames.first, task.frames.last)
-                                       : std::string(step_name(task.step));
+  if (task.step != FarmStep::Frames) return step_name(task.step);
+  return task.frames.count() == 1 ? fmt::format("frame {}", task.frames.first)
+                                  : fmt::format("frames {}-{}", task.frames.first, task.frames.last);
 }
 
 }  // namespace
