@@ -55,9 +55,12 @@ const FarmRecord& require_record(const FarmedShot& shot) {
 
 /// Slurm's queue if one of the shots was given to Slurm.
 std::optional<Queue> ask_queue(const Shots& shots) {
+  std::set<unsigned> users;
   for (const auto& shot : shots)
-    if (shot->record() && shot->record()->engine == "slurm" && !shot->record()->tasks.empty()) return ask_slurm();
-  return std::nullopt;
+    if (shot->record() && shot->record()->engine == "slurm" && !shot->record()->tasks.empty())
+      users.insert(shot->record()->user);
+  if (users.empty()) return std::nullopt;
+  return ask_slurm(users);
 }
 
 std::vector<TaskStatus> statuses_of(FarmedShot& shot, const std::optional<Queue>& queue) {
@@ -199,7 +202,7 @@ class Watch {
   bool is_over() {
     const auto now = Clock::now();
     if (!queue_ || now - asked_ >= kQueuePause) {
-      queue_ = ask_slurm();
+      queue_ = ask_queue(shots_);
       asked_ = now;
     }
     missing_ = running_ = waiting_ = 0;

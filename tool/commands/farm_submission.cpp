@@ -98,7 +98,7 @@ void cancel(const std::vector<std::string>& jobs) {
 }
 
 FarmRecord new_record(const FarmedShot& shot, const FarmPlan& plan, const std::string& engine) {
-  return {engine, shot.site(), shot.frames(), shot.settings(), plan.kept};
+  return {engine, ::getuid(), shot.site(), shot.frames(), shot.settings(), plan.kept};
 }
 
 std::vector<SubmittedTask> all_tasks(const FarmPlan& plan) {
@@ -138,7 +138,7 @@ FarmPlan plan_submission(FarmedShot& shot, const std::vector<TaskStatus>& status
   keep_what_goes_on(statuses, plan);
   FarmWork work = find_work(shot, plan.kept);
   settle_movie(work, plan);
-  const FarmEstimate estimate = shot.estimate(std::max(1, shot.settings().cpus));
+  const FarmEstimate estimate = shot.estimate(shot.settings().cpus > 0 ? shot.settings().cpus : kDefaultTaskCpus);
   const int chunk =
       shot.settings().chunk > 0 ? shot.settings().chunk : default_chunk(estimate, static_cast<int>(work.frames.size()));
   plan.jobs = plan_jobs(work, chunk, most_tasks);
@@ -200,8 +200,8 @@ std::string write_openjd(FarmedShot& shot, const FarmPlan& plan, const std::stri
   return path;
 }
 
-Queue ask_slurm() {
-  return parse_queue(run_slurm(squeue_command(::getuid())));
+Queue ask_slurm(const std::set<unsigned>& users) {
+  return parse_queue(run_slurm(squeue_command(users)));
 }
 
 }  // namespace softreel

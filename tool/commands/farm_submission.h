@@ -27,7 +27,7 @@ std::string slurm_preview(const FarmedShot& shot, const FarmPlan& plan);
 /// Writes the template. Returns its path.
 std::string write_openjd(FarmedShot& shot, const FarmPlan& plan, const std::string& path);
 
-/// What is in Slurm's queue. Throws work_error if it cannot be asked.
-Queue ask_slurm();
+/// What is in Slurm's queue of these users. Throws work_error if it cannot be asked.
+Queue ask_slurm(const std::set<unsigned>& users);
 
 }  // namespace softreel

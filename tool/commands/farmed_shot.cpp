@@ -155,9 +155,10 @@ ShotProgress FarmedShot::progress(Thoroughness how) {
 
 FarmEstimate FarmedShot::estimate(int cpus) {
   Outputs outputs(session_->shot().output.directory, name(), session_->context().log);
-  const SceneStage scenes(run());
+  ShotRun& current = run();
+  const SceneStage scenes(current);
   const PictureStage pictures(scenes, session_->shot(), outputs, session_->context());
-  const PlanEstimate plan = estimate_plan(run(), pictures, session_->frames(), cpus);
+  const PlanEstimate plan = estimate_plan(current, pictures, session_->frames(), cpus);
   return {plan.bytes, plan.fill_seconds, plan.simulate_seconds,
           plan.traced > 0 ? plan.render_seconds / plan.traced : 0.0};
 }

@@ -48,6 +48,7 @@ class FarmedShot {
   void open(const ShotOptions& options);
   void load_record();
   void find_site(const ShotOptions& options);
+  /// Of the shot as it is now: what an earlier call returned may be gone.
   ShotRun& run();
 
   std::unique_ptr<Session> session_;

@@ -78,6 +78,7 @@ std::string to_json(const FarmRecord& record) {
                      {"log", task.log}});
   const ordered_json json{{"format", kFormat},
                           {"engine", record.engine},
+                          {"user", record.user},
                           {"shot", shot_json(record.shot)},
                           {"frames", {record.frames.first, record.frames.last}},
                           {"settings", settings_json(record.settings)},
@@ -98,6 +99,7 @@ FarmRecord parse_farm_record(const std::string& text, const std::string& path) {
     if (json.at("format").get<int>() != kFormat) throw input_error("its format is another one");
     FarmRecord record;
     json.at("engine").get_to(record.engine);
+    json.at("user").get_to(record.user);
     record.shot = read_shot(json.at("shot"));
     record.frames = {json.at("frames").at(0).get<int>(), json.at("frames").at(1).get<int>()};
     record.settings = read_settings(json.at("settings"));

@@ -19,6 +19,7 @@ struct SubmittedTask {
 
 struct FarmRecord {
   std::string engine;  ///< "slurm", "openjd"
+  unsigned user = 0;   ///< who submitted: others may ask too
   FarmShot shot;
   FrameChunk frames;  ///< asked for
   FarmSettings settings;

@@ -12,7 +12,6 @@
 namespace softreel {
 namespace {
 
-constexpr int kDefaultCpus = 2;  ///< what the estimates of a plan are for
 constexpr double kTaskSeconds = 300;
 constexpr int kLeastTasks = 8;
 constexpr double kMebibyte = 1024.0 * 1024.0;
@@ -124,7 +123,7 @@ int default_chunk(const FarmEstimate& estimate, int frames) {
 
 FarmNeeds needs_of(const FarmJob& job, const FarmEstimate& estimate, const FarmSettings& settings) {
   FarmNeeds needs;
-  needs.cpus = settings.cpus > 0 ? settings.cpus : kDefaultCpus;
+  needs.cpus = settings.cpus > 0 ? settings.cpus : kDefaultTaskCpus;
   needs.bytes =
       settings.memory.empty() ? rounded_memory(2 * estimate.bytes + 1024 * kMebibyte) : parse_memory(settings.memory);
   needs.seconds =

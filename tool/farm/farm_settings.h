@@ -30,6 +30,9 @@ double parse_memory(const std::string& text);
 /// DAYS-HOURS[:MINUTES[:SECONDS]]. Throws input_error.
 double parse_time(const std::string& text);
 
+/// What the figures of a plan's estimate were measured with.
+inline constexpr int kDefaultTaskCpus = 2;
+
 /// What a task asks of its node.
 struct FarmNeeds {
   int cpus = 1;

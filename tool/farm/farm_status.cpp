@@ -136,6 +136,7 @@ std::string status_text(const FarmRecord& record, const std::vector<TaskStatus>&
     if (!is_broken(status.state) || status.state == TaskState::Cancelled) continue;
     text += fmt::format("  {} {}{}: {}\n", shown_task(status.task), state_name(status.state),
                         status.node.empty() ? "" : " on node " + status.node, status.why);
+    if (status.state == TaskState::Stuck) continue;  // it never ran: there is no log
     const std::string line = told(status.task);
     if (!line.empty()) text += fmt::format("    {}\n", line);
     if (!status.task.log.empty()) text += fmt::format("    log: {}/{}\n", log_folder(record.shot), status.task.log);
@@ -157,7 +158,7 @@ std::string status_json(const FarmRecord& record, const std::vector<TaskStatus>&
                                 {"node", status.node}};
     if (is_broken(status.state)) {
       json["why"] = status.why;
-      json["said"] = told(status.task);
+      json["said"] = status.state == TaskState::Stuck ? std::string() : told(status.task);
     }
     if (!status.task.log.empty()) json["log"] = log_folder(record.shot) + "/" + status.task.log;
     tasks.push_back(std::move(json));

@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include <fmt/ranges.h>
+
 namespace softreel {
 namespace {
 
@@ -40,8 +42,13 @@ bool contains(const std::array<std::string_view, N>& names, const std::string& n
 
 }  // namespace
 
-std::vector<std::string> squeue_command(unsigned user) {
-  return {"squeue", "--noheader", "--array", "--states=all", "--user=" + std::to_string(user), "--format=%i|%T|%N|%r"};
+std::vector<std::string> squeue_command(const std::set<unsigned>& users) {
+  return {"squeue",
+          "--noheader",
+          "--array",
+          "--states=all",
+          fmt::format("--user={}", fmt::join(users, ",")),
+          "--format=%i|%T|%N|%r"};
 }
 
 Queue parse_queue(const std::string& said) {

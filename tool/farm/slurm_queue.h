@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ struct QueueEntry {
 /// By Slurm's name of the task: "12", "12_3".
 using Queue = std::map<std::string, QueueEntry>;
 
-/// Lists the tasks of a user (a number).
-std::vector<std::string> squeue_command(unsigned user);
+/// Lists the tasks of these users (numbers), at least one.
+std::vector<std::string> squeue_command(const std::set<unsigned>& users);
 
 /// Reads what squeue_command's program printed; lines of another form are left out.
 Queue parse_queue(const std::string& said);

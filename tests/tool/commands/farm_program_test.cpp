@@ -133,6 +133,26 @@ TEST_F(Farm, ADryRunShowsScriptsAndWritesNothing) {
   EXPECT_EQ(submitted(), "");
 }
 
+TEST_F(Farm, FramesThatStandForThemselvesWaitForTheTetrahedraOnly) {
+  start("independent");
+  const std::string how = "--set shot.mode='\"static\"' --set shot.independent=true ";
+  ASSERT_EQ(farm(how + "--chunk 2").status, 0);
+  const std::string simulate = read_text(folder_ + "/out/.farm/ball/scripts/simulate.sh");
+  EXPECT_NE(simulate.find("chunks=(1-1)"), std::string::npos);
+  ASSERT_EQ(render(how, "alone").status, 0);
+  for (const char* name : {"ball.0002.png", "ball.0004.png", "ball.mp4"})
+    EXPECT_EQ(read_text(folder_ + "/out/" + name), read_text(folder_ + "/alone/" + name)) << name;
+}
+
+TEST_F(Farm, AnErrorDialIsTurnedByTheFirstTask) {
+  start("dial");
+  const std::string how = "--set solver.error='\"20%\"' ";
+  const Outcome outcome = farm(how + "--chunk 2");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("--memory and --time"), std::string::npos) << "sizes are not known yet: " << outcome.err;
+  for (const json& task : tasks(0)) EXPECT_EQ(task["state"], "done") << task;
+}
+
 TEST_F(Farm, AFailingTaskIsNamedWithItsLogAndARetryMakesOnlyWhatIsMissing) {
   start("retry");
   ASSERT_EQ(render("--only frames --frames 1-3").status, 0);

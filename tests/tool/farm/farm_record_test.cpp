@@ -10,6 +10,7 @@ namespace {
 FarmRecord some_record() {
   FarmRecord record;
   record.engine = "slurm";
+  record.user = 1007;
   record.shot = {"name \"x\"", "/s/shot.toml",   "/s/out", "/s/cache",      "/s/out/.farm/name", "farm-01",
                  "/s/work",    {"a=\n'", "b=c"}, 2.5,      "/bin/softreel", "softreel 1",        "abc"};
   record.frames = {-3, 96};
@@ -30,6 +31,7 @@ TEST(FarmRecord, ComesBackAsItWasWritten) {
   ASSERT_EQ(read.tasks.size(), 2U);
   EXPECT_EQ(read.tasks[1].step, FarmStep::Movie);
   EXPECT_EQ(read.frames, record.frames);
+  EXPECT_EQ(read.user, 1007U);
 }
 
 TEST(FarmRecord, WhatIsNoRecordIsRefusedByName) {
