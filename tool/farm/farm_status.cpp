@@ -21,12 +21,22 @@ TaskStatus live_status(const SubmittedTask& task, const QueueEntry& entry) {
   return {task, TaskState::Running, entry.node, {}};
 }
 
+/// Why Slurm ended a task, with the way out; empty if the task ended by itself, or nobody knows.
+std::string slurm_reason(const QueueEntry* entry) {
+  if (entry == nullptr || entry->state == "FAILED" || entry->state == "COMPLETED") return {};
+  if (entry->state == "TIMEOUT") return "Slurm says TIMEOUT; --retry --time LIMIT gives it longer";
+  if (entry->state == "OUT_OF_MEMORY") return "Slurm says OUT_OF_MEMORY; --retry --memory SIZE gives it more";
+  return "Slurm says " + entry->state;
+}
+
 /// A task that is in no queue any more and whose results are not there.
 TaskStatus ended_status(const SubmittedTask& task, const QueueEntry* entry, const TaskRecord& said) {
   const std::string node = !said.node.empty() ? said.node : entry != nullptr ? entry->node : "";
-  if (said.state == "failed") return {task, TaskState::Failed, node, fmt::format("exit status {}", said.status)};
   if (entry != nullptr && entry->state == "CANCELLED" && said.state.empty())
     return {task, TaskState::Cancelled, {}, {}};
+  // A task that Slurm ends says that it was interrupted, which is less.
+  if (const std::string reason = slurm_reason(entry); !reason.empty()) return {task, TaskState::Failed, node, reason};
+  if (said.state == "failed") return {task, TaskState::Failed, node, fmt::format("exit status {}", said.status)};
   if (entry != nullptr && entry->state == "COMPLETED")
     return {task, TaskState::Lost, node, "it ended well, but what it made is not there: is the output folder shared?"};
   if (entry != nullptr) return {task, TaskState::Failed, node, "Slurm says " + entry->state};
@@ -107,7 +117,11 @@ std::string telling_line(const std::string& log) {
     last = line;
     // The task's own closing line says only that it failed.
     const bool closing = line.starts_with("softreel farm: ") && line.find(" failed on node ") != std::string::npos;
-    if ((line.starts_with("softreel: ") || line.starts_with("softreel farm: ")) && !closing) said = line;
+    // Nor does the word of a softreel that was ended say by whom: Slurm's line does.
+    const bool ended = line.starts_with("softreel: Interrupted");
+    const bool ours = line.starts_with("softreel: ") || line.starts_with("softreel farm: ");
+    const bool of_slurm = line.starts_with("slurmstepd") && line.find("error: ") != std::string::npos;
+    if (of_slurm || (ours && !closing && !ended)) said = line;
     if (line.find("error: ") != std::string::npos) error = line;
   }
   return !said.empty() ? said : !error.empty() ? error : last;

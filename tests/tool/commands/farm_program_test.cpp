@@ -44,6 +44,9 @@ class Farm : public ::testing::Test {
  protected:
   void start(const std::string& name) {
     folder_ = shot_folder(name);
+    std::string shot = read_text(folder_ + "/shot.toml");
+    shot.replace(shot.find("movie = false"), 13, "movie = true");
+    write_text(folder_ + "/shot.toml", shot);
     slurm_ = folder_ + "/slurm";
     fs::create_directories(slurm_);
     program("sbatch", kSbatch);
@@ -55,13 +58,11 @@ class Farm : public ::testing::Test {
     fs::permissions(slurm_ + "/" + name, fs::perms::owner_all);
   }
   Outcome farm(const std::string& options = "") {
-    return run(
-        fmt::format("export PATH={1}:$PATH; softreel farm {0}/shot.toml --output {0}/out --set output.movie=true {2}",
-                    folder_, slurm_, options));
+    return run(fmt::format("export PATH={1}:$PATH; softreel farm {0}/shot.toml --output {0}/out {2}", folder_, slurm_,
+                           options));
   }
   Outcome render(const std::string& options, const std::string& output = "out") {
-    return run(fmt::format("softreel render {0}/shot.toml --set output.movie=true --quiet --output {0}/{1} {2}",
-                           folder_, output, options));
+    return run(fmt::format("softreel render {0}/shot.toml --quiet --output {0}/{1} {2}", folder_, output, options));
   }
   std::string submitted() { return exists(slurm_ + "/submitted") ? read_text(slurm_ + "/submitted") : ""; }
   void expect_result_of_render() {

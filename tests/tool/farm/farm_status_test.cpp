@@ -58,6 +58,8 @@ TEST(FarmStatus, FailuresSayNodeAndWhy) {
   EXPECT_EQ(killed.state, TaskState::Failed);
   EXPECT_NE(killed.why.find("OUT_OF_MEMORY"), std::string::npos);
   EXPECT_EQ(state_of(entry("CANCELLED"), false), TaskState::Cancelled);
+  const TaskStatus late = status_of(entry("TIMEOUT"), false, {"failed", "node9", "", "", "", 130});
+  EXPECT_NE(late.why.find("TIMEOUT"), std::string::npos) << "not that it was interrupted: " << late.why;
 }
 
 TEST(FarmStatus, WhatVanishedIsLostNotWaiting) {
@@ -107,6 +109,13 @@ TEST(FarmStatus, FindsTheTellingLineOfALog) {
             "slurmstepd: error: *** JOB 12 CANCELLED DUE TO TIME LIMIT ***");
   EXPECT_EQ(telling_line("softreel farm: simulate of x: node n1 does not see the cache folder /c.\n"),
             "softreel farm: simulate of x: node n1 does not see the cache folder /c.");
+  EXPECT_EQ(telling_line("slurmstepd-east: error: *** JOB 13 ON east CANCELLED DUE TO TIME LIMIT ***\n"
+                         "softreel: Interrupted; what is finished is kept.\n"),
+            "slurmstepd-east: error: *** JOB 13 ON east CANCELLED DUE TO TIME LIMIT ***");
+  EXPECT_EQ(
+      telling_line("slurmstepd: error: *** JOB 13 CANCELLED DUE TO NODE FAILURE ***\nsoftreel: the disk is full\n"),
+      "softreel: the disk is full")
+      << "a log goes on when a task is tried again";
   EXPECT_EQ(telling_line("Segmentation fault"), "Segmentation fault");
   EXPECT_EQ(telling_line(""), "");
 }
