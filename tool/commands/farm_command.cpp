@@ -90,6 +90,11 @@ int print_statuses(const Shots& shots, const std::optional<Queue>& queue, const 
   int broken = 0;
   std::string text, json;
   for (const auto& shot : shots) {
+    if (!shot->record()) {  // all of it was there
+      text += fmt::format("farm: {} in {}: nothing was to be done\n", shot->name(), shot->site().output);
+      json += (json.empty() ? "" : ",\n") + status_json({{}, 0, shot->site(), {}, {}, {}}, {}, {});
+      continue;
+    }
     const std::vector<TaskStatus> statuses = statuses_of(*shot, queue);
     const auto told = [&](const SubmittedTask& task) { return shot->told(task); };
     const FarmSummary summary = summarize(statuses);
@@ -276,7 +281,11 @@ int run_farm(const FarmOptions& options) {
   const std::optional<Queue> queue = options.shot.dry_run ? std::nullopt : ask_queue(shots);
   bool any = false;
   for (const auto& shot : shots) any = submit(*shot, options, queue, console) || any;
-  if (!any || !options.wait || options.shot.dry_run) return 0;
+  if (options.shot.dry_run) return 0;
+  if (!any || !options.wait) {
+    if (options.shot.json) print_statuses(shots, ask_queue(shots), options.shot);
+    return 0;
+  }
   return wait_for(shots, options, console);
 }
 

@@ -123,6 +123,23 @@ TEST_F(Farm, SaysThatNothingIsToBeDoneAndSubmitsNothing) {
   EXPECT_EQ(submitted(), "");
 }
 
+TEST_F(Farm, AShotThatIsDoneStopsNoOther) {
+  start("several");
+  std::string other = read_text(folder_ + "/shot.toml");
+  other.replace(other.find("name = \"ball\""), 13, "name = \"other\"");
+  write_text(folder_ + "/other.toml", other);
+  ASSERT_EQ(render("").status, 0);
+  const Outcome outcome = farm(folder_ + "/other.toml --wait --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json shots = json::parse(outcome.out)["shots"];
+  ASSERT_EQ(shots.size(), 2U);
+  EXPECT_EQ(shots[0]["done"], true);
+  EXPECT_TRUE(shots[0]["tasks"].empty()) << "nothing of it was submitted";
+  EXPECT_EQ(shots[1]["done"], true);
+  EXPECT_FALSE(shots[1]["tasks"].empty());
+  EXPECT_TRUE(exists(folder_ + "/out/other.mp4"));
+}
+
 TEST_F(Farm, ADryRunShowsScriptsAndWritesNothing) {
   start("dry");
   const Outcome outcome = farm("--dry-run --chunk 1 --partition night --sbatch=--nice=7");
