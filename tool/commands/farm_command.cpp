@@ -21,6 +21,7 @@ using Shots = std::vector<std::unique_ptr<FarmedShot>>;
 
 constexpr std::chrono::seconds kPause(2);        ///< between looks at the cache
 constexpr std::chrono::seconds kQueuePause(10);  ///< between questions to Slurm, which many others ask too
+constexpr int kMostFailures = 30;                ///< of questions in a row: five minutes
 constexpr std::chrono::seconds kPatience(15);    ///< until what a task wrote on another machine must be seen here
 
 Shots read_shots(const FarmOptions& options) {
@@ -207,7 +208,7 @@ class Watch {
   bool is_over() {
     const auto now = Clock::now();
     if (!queue_ || now - asked_ >= kQueuePause) {
-      queue_ = ask_queue(shots_);
+      ask();
       asked_ = now;
     }
     missing_ = running_ = waiting_ = 0;
@@ -225,6 +226,18 @@ class Watch {
     return done || (over && now - quiet_since_ >= kPatience);
   }
 
+  /// Slurm may be restarted meanwhile: what it said last holds for a while.
+  void ask() {
+    try {
+      queue_ = ask_queue(shots_);
+      failures_ = 0;
+    } catch (const Error& error) {
+      failures_ += 1;
+      if (!queue_ || failures_ == kMostFailures) throw;
+      console_.warn(fmt::format("Slurm does not answer; asked again in {} s: {}", kQueuePause.count(), error.what()));
+    }
+  }
+
   void pause() const {
     const auto end = Clock::now() + kPause;
     while (Clock::now() < end) {
@@ -239,7 +252,7 @@ class Watch {
   Console& console_;
   std::optional<Queue> queue_;
   Clock::time_point asked_, quiet_since_ = Clock::now();
-  int missing_ = 0, running_ = 0, waiting_ = 0;
+  int missing_ = 0, running_ = 0, waiting_ = 0, failures_ = 0;
 };
 
 int wait_for(const Shots& shots, const FarmOptions& options, Console& console) {
