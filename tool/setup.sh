@@ -2,13 +2,15 @@
 
 softreel_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-# Installs the packages of tool/packages.txt that are missing; asks the package manager for nothing if none is.
+# Installs the packages of a list that are missing; asks the package manager for nothing if none is. Where a line names a
+# program too, the package counts as installed if that program is there.
 softreel_install() {
-  local missing=() package
-  while read -r package; do
+  local list=${1:-tool/packages.txt} missing=() package program
+  while read -r package program; do
     case "$package" in '' | '#'*) continue ;; esac
+    if [ -n "$program" ] && command -v "$program" >/dev/null; then continue; fi
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
-  done <"$softreel_root/tool/packages.txt"
+  done <"$softreel_root/$list"
   [ ${#missing[@]} -eq 0 ] && return 0
   echo "installing ${#missing[@]} packages: ${missing[*]}" >&2
   local become=()
@@ -23,6 +25,20 @@ softreel_install() {
   "${become[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
     >/dev/null || {
     echo "apt-get could not install: ${missing[*]}" >&2
+    return 2
+  }
+}
+
+# Installs the clients that tests/clients asks: packages, and npm packages into build/clients.
+softreel_install_clients() {
+  softreel_install tests/clients/packages.txt
+  local from=$softreel_root/tests/clients to=$softreel_root/build/clients log
+  mkdir -p "$to"
+  cmp -s "$from/package-lock.json" "$to/package-lock.json" && [ -d "$to/node_modules" ] && return 0
+  cp "$from/package.json" "$from/package-lock.json" "$to"
+  log=$(cd "$to" && npm ci --ignore-scripts --no-audit --no-fund 2>&1) || {
+    echo "$log" >&2
+    rm -f "$to/package-lock.json"
     return 2
   }
 }

@@ -9,8 +9,8 @@
 #include "tool/batch/energy_plot.h"
 #include "tool/report/console.h"
 #include "tool/report/markup.h"
-#include "tool/report/version.h"
 #include "tool/report/run_report.h"
+#include "tool/report/version.h"
 #include "tool/stages/base64.h"
 
 namespace softreel {

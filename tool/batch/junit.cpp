@@ -5,6 +5,7 @@
 #include "tool/batch/child_process.h"
 #include "tool/report/markup.h"
 #include "tool/report/run_report.h"
+#include "tool/report/version.h"
 
 namespace softreel {
 namespace {

@@ -13,6 +13,7 @@
 #include "core/base/nearest_name.h"
 #include "tool/commands/commands.h"
 #include "tool/commands/everyday_commands.h"
+#include "tool/commands/farm_options.h"
 #include "tool/commands/log_options.h"
 #include "tool/report/version.h"
 
@@ -104,9 +105,11 @@ struct Parsed {
   ExportOptions exporting;
   PreviewOptions preview;
   SheetCommandOptions sheet;
+  RenderPart part = RenderPart::All;
   int turntable = 0;
   GoldenOptions golden;
   BatchOptions batch;
+  FarmOptions farm;
   StatusOptions status;
   CleanOptions clean;
   InspectOptions inspect;
@@ -195,9 +198,11 @@ void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
       ->check(CLI::Range(1, 10000))
       ->excludes(render->get_option("--dry-run"))
       ->group("Shot");
+  CLI::Option* only = add_render_part(*render, parsed.part);
+  only->excludes(render->get_option("--turntable"))->excludes(render->get_option("--dry-run"));
   render->callback([&] {
     run = [&parsed] {
-      return parsed.turntable > 0 ? run_turntable(parsed.shot, parsed.turntable) : run_render(parsed.shot);
+      return parsed.turntable > 0 ? run_turntable(parsed.shot, parsed.turntable) : run_render(parsed.shot, parsed.part);
     };
   });
 
@@ -363,6 +368,7 @@ int run_command_line(int argc, char** argv) {
   add_version_option(app, parsed.everyday);
   add_new_command(app, parsed.everyday, run);
   add_making_commands(app, parsed, run);
+  add_farm_command(app, parsed.farm, run);
   add_looking_commands(app, parsed, run);
   add_mesh_commands(app, parsed, run);
   add_reference_commands(app, parsed.everyday, run);

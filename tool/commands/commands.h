@@ -14,8 +14,18 @@ class App;
 
 namespace softreel {
 
+/// What of a shot's files is made: a farm makes frames at several places, and then the rest at one.
+enum class RenderPart {
+  All,
+  Frames,  ///< pictures only
+  Movie    ///< movie and contact sheet, from pictures that are there
+};
+
 /// Simulates and renders a shot: pictures, and a movie of all its frames.
-int run_render(const ShotOptions& options);
+int run_render(const ShotOptions& options, RenderPart part = RenderPart::All);
+
+/// Makes movie and contact sheet of finished pictures; throws work_error, naming the frames, if pictures are missing.
+int run_movie(const ShotOptions& options);
 
 /// Renders the first of the frames asked for from `count` places on a circle round what the camera looks at.
 int run_turntable(const ShotOptions& options, int count);

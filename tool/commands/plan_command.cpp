@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tool/commands/commands.h"
+#include "tool/commands/plan_estimate.h"
 #include "tool/stages/json_text.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/picture_stage.h"
@@ -181,6 +182,11 @@ int run_plan(const ShotOptions& options) {
               format_duration(plan.fill_seconds).c_str(), format_duration(plan.simulate_seconds).c_str(),
               format_duration(plan.render_seconds).c_str());
   return 0;
+}
+
+PlanEstimate estimate_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan& frames, int threads) {
+  const Plan plan = make_plan(run, pictures, frames, threads);
+  return {plan.bytes, plan.fill_seconds, plan.simulate_seconds, plan.render_seconds, plan.traced};
 }
 
 }  // namespace softreel

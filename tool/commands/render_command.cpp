@@ -52,7 +52,8 @@ void remove_outdated(const Session& session, PictureStage& pictures, Outputs& ou
 
 }  // namespace
 
-int run_render(const ShotOptions& options) {
+int run_render(const ShotOptions& options, RenderPart part) {
+  if (part == RenderPart::Movie) return run_movie(options);
   if (options.dry_run) return run_plan(options);
   Session session(options);
   const Shot& shot = session.shot();
@@ -75,9 +76,10 @@ int run_render(const ShotOptions& options) {
   if (shot.output.png) made.push_back(made_line(outputs, frames, "png"));
   if (shot.output.exr) made.push_back(made_line(outputs, frames, "exr"));
   const bool whole = frames.first == shot.settings.first_frame && frames.last == shot.settings.last_frame;
-  if (shot.output.movie && shot.output.png && whole && frames.count() > 1)
+  const bool all = part == RenderPart::All;
+  if (all && shot.output.movie && shot.output.png && whole && frames.count() > 1)
     made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
-  if (shot.output.contact_sheet && shot.output.png)
+  if (all && shot.output.contact_sheet && shot.output.png)
     made.push_back(make_sheet(shot, frames_of_sheet(session), SheetOptions().columns, outputs, session.context()));
   RunReport report = session.report("render", run);
   report.pictures = counts;
