@@ -88,7 +88,8 @@ TEST_F(ExportProgram, AllFormatsOfOneRunSayTheSamePositionsInFileOrder) {
 }
 
 TEST_F(ExportProgram, ObjectSpaceWithItsPlacementIsWorldSpace) {
-  const std::string placed = "--set body.ball.rotate_deg=[10,20,30] --set body.ball.translate=[0,0.5,-1] --set body.fit=2 ";
+  const std::string placed =
+      "--set body.ball.rotate_deg=[10,20,30] --set body.ball.translate=[0,0.5,-1] --set body.fit=2 ";
   require_export(placed + "--format usda,glb");
   const auto object = read_usda(bytes("ball.usda"));
   const GlbScene glb = read_glb(bytes("ball.ball.glb"));

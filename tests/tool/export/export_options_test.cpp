@@ -7,7 +7,7 @@ namespace softreel {
 namespace {
 
 ExportSettings settings_of(const ExportWishes& wishes) {
-  return export_settings(wishes, chosen_formats(wishes), 24);
+  return export_settings(wishes, chosen_formats(wishes));
 }
 
 /// A wish of formats, which the caller may add to.
@@ -23,10 +23,9 @@ void expect_refused(const ExportWishes& wishes, const std::vector<std::string>& 
     EXPECT_NE(message.find(word), std::string::npos) << "no \"" << word << "\" in: " << message;
 }
 
-TEST(ExportOptions, TakeTheRateOfTheShotUnlessToldOtherwise) {
+TEST(ExportOptions, NameFormatsOnceAndTheirRate) {
   ExportWishes wishes = wish({"mdd", "usda", "mdd"});
   EXPECT_EQ(chosen_formats(wishes).size(), 2U);
-  EXPECT_EQ(settings_of(wishes).fps, 24);
   wishes.fps = 30;
   EXPECT_EQ(settings_of(wishes).fps, 30);
   EXPECT_EQ(chosen_formats({}).at(0)->name, "obj");

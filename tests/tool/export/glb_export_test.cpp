@@ -10,12 +10,12 @@ namespace {
 
 using testing::GlbScene;
 
-/// The largest distance between what a scene shows and the positions, over the size of what moved.
+/// The largest distance between what a scene shows and the positions, over the size of the numbers that it is made of.
 double worst_error(const std::vector<float>& shown, const std::vector<Vec3>& positions, const std::vector<Vec3>& rest) {
   double worst = 0;
   for (std::size_t v = 0; v < positions.size(); ++v)
     for (int k = 0; k < 3; ++k) {
-      const double size = std::max({std::abs(positions[v][k]), std::abs(rest[v][k])});
+      const double size = std::abs(positions[v][k]) + std::abs(rest[v][k]);
       const float exact = static_cast<float>(positions[v][k]);
       if (size > 0)
         worst = std::max(worst, std::abs(double{shown[3 * v + static_cast<std::size_t>(k)]} - exact) / size);
