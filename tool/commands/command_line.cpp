@@ -142,7 +142,7 @@ void add_export_command(CLI::App& app, Parsed& parsed, Runner& run) {
   exporting->add_option("--format", wishes.formats, formats)
       ->option_text("LIST")
       ->delimiter(',')
-      ->expected(1)
+      ->allow_extra_args(false)
       ->take_all()
       ->group("Files");
   exporting->add_option("--space", wishes.space, "object (the file's own) | world [object]")->group("Files");

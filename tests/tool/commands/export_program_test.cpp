@@ -230,7 +230,29 @@ TEST_F(ExportProgram, RefusesBeforeItWorksWhatAFormatCouldOnlyIgnore) {
     for (const std::string& word : refusal.words)
       EXPECT_NE(outcome.err.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.err;
   }
-  EXPECT_FALSE(exists(folder_ + "/out/.cache/simulation")) << "a frame was simulated for nothing";
+  EXPECT_FALSE(exists(folder_ + "/out")) << "something was made for nothing";
+}
+
+TEST_F(ExportProgram, OptionsMayStandBeforeTheShot) {
+  const Outcome outcome =
+      run(fmt::format("softreel export --format obj,ply --frames 1 {0}/shot.toml --output {0}/out --quiet", folder_));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(exists(file("ball.ball.0001.obj")));
+  EXPECT_TRUE(exists(file("ball.ball.0001.ply")));
+}
+
+TEST_F(ExportProgram, TheCameraOfUsdaMovesWhereTheShotsDoesAndStaysOtherwise) {
+  require_export("--format usda");
+  const auto still = read_usda(bytes("ball.usda"));
+  const UsdPrim& camera = still->child("ball/camera");
+  EXPECT_NEAR(camera.property("focalLength").value.number, 0.5, 1e-7) << "50 mm in tenths of a metre";
+  EXPECT_EQ(camera.property("xformOp:transform").value.doubles().size(), 16U);
+  require_export("--format usda --set camera.focal_length_mm='[{frame=1,value=50},{frame=3,value=90}]'");
+  const auto zoomed = read_usda(bytes("ball.usda"));
+  const auto& lengths = zoomed->child("ball/camera").property("focalLength").samples;
+  ASSERT_EQ(lengths.size(), 4U);
+  EXPECT_NEAR(lengths.at(1).number, 0.5, 1e-7);
+  EXPECT_NEAR(lengths.at(3).number, 0.9, 1e-7);
 }
 
 TEST(ExportHelp, NamesEveryFormatWithItsLine) {
