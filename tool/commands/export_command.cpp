@@ -62,14 +62,14 @@ class BodyExport {
     request.nodes = tets;
     request.shutter = static_cast<double>(between) / (between + 1);
     request.segments = std::max(between, 1);
-    const SkinnedBody skinned = run_.skin_body(body_, frame, request);
-    CHECK(skinned.times.size() == static_cast<std::size_t>(between) + 1);
-    if (tets && materials_.empty())
-      materials_ =
-          element_materials(run_.resolved(body_), run_.settings(body_), run_.loaded(body_), run_.filled(body_)->mesh);
-    const ScopedStage stage(run_.context().times, "export");
-    for (int k = 0; k <= between; ++k)
-      write_sample(first_sample(frame) + k, k, skinned.times[static_cast<std::size_t>(k)]);
+    int place = 0;
+    run_.skin_times(body_, frame, request, [&](const SkinnedBody::Time& time) {
+      const ScopedStage stage(run_.context().times, "export");
+      if (tets && materials_.empty()) find_materials();
+      write_sample(first_sample(frame) + place, place, time);
+      ++place;
+    });
+    CHECK(place == between + 1);
   }
 
  private:
@@ -80,6 +80,11 @@ class BodyExport {
 
   int last_sample(int frame) const { return (frame - frames_.first) * (settings_.subframes + 1); }
   int first_sample(int frame) const { return frame == frames_.first ? 0 : last_sample(frame) - settings_.subframes; }
+
+  void find_materials() {
+    materials_ =
+        element_materials(run_.resolved(body_), run_.settings(body_), run_.loaded(body_), run_.filled(body_)->mesh);
+  }
 
   void write_sample(int sample, int place, const SkinnedBody::Time& time) {
     const auto start = std::chrono::steady_clock::now();
