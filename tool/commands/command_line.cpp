@@ -15,6 +15,7 @@
 #include "tool/commands/everyday_commands.h"
 #include "tool/commands/farm_options.h"
 #include "tool/commands/log_options.h"
+#include "tool/export/formats.h"
 #include "tool/report/version.h"
 
 namespace softreel {
@@ -187,6 +188,43 @@ void add_batch_command(CLI::App& app, Parsed& parsed, Runner& run) {
   batch->callback([&] { run = [&parsed] { return run_batch(parsed.batch); }; });
 }
 
+void add_export_command(CLI::App& app, Parsed& parsed, Runner& run) {
+  CLI::App* exporting = app.add_subcommand("export", "write the deformed meshes, in the vertex order of their files");
+  ExportWishes& wishes = parsed.exporting.wishes;
+  add_shot_options(*exporting, parsed.exporting.shot);
+  std::string formats = "with commas between, or repeated [obj]:";
+  for (const ExportFormat& format : export_formats()) formats += fmt::format("\n{}: {}", format.name, format.about);
+  exporting->add_option("--format", wishes.formats, formats)
+      ->option_text("LIST")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->take_all()
+      ->group("Files");
+  exporting->add_option("--space", wishes.space, "object (the file's own) | world [object]")
+      ->option_text("SPACE")
+      ->group("Files");
+  exporting
+      ->add_option("--unit", wishes.unit,
+                   "unit of the exported world: m | cm | mm | in | ft, or the metres of one unit [m]")
+      ->option_text("UNIT")
+      ->group("Files");
+  exporting->add_option("--up", wishes.up, "axis of the exported world that points up: y | z [y]")
+      ->option_text("AXIS")
+      ->group("Files");
+  exporting->add_option("--fps", wishes.fps, "frames a second at which it plays, above 0 [shot.fps]")
+      ->option_text("RATE")
+      ->check(length("rate"))
+      ->group("Files");
+  exporting
+      ->add_option("--subframes", wishes.subframes,
+                   "samples between two frames, 0 to 99, on straight lines between the steps of the simulation [0]")
+      ->option_text("N")
+      ->check(CLI::Range(0, 99))
+      ->group("Files");
+  exporting->add_flag("--normals", wishes.normals, "normals of the vertices too")->group("Files");
+  exporting->callback([&] { run = [&parsed] { return run_export(parsed.exporting); }; });
+}
+
 void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   CLI::App* render = app.add_subcommand("render", "simulate a shot and trace its pictures and movie");
   add_shot_options(*render, parsed.shot);
@@ -221,12 +259,7 @@ void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   add_shot_options(*simulate, parsed.shot);
   simulate->callback([&] { run = [&parsed] { return run_simulate(parsed.shot); }; });
 
-  CLI::App* exporting = app.add_subcommand("export", "write the deformed meshes, in the vertex order of their files");
-  add_shot_options(*exporting, parsed.exporting.shot);
-  exporting->add_option("--format", parsed.exporting.format, "obj | ply | pc2 [obj]")->group("Files");
-  exporting->add_option("--space", parsed.exporting.space, "object (the file's own) | world [object]")->group("Files");
-  exporting->callback([&] { run = [&parsed] { return run_export(parsed.exporting); }; });
-
+  add_export_command(app, parsed, run);
   add_preview_command(app, parsed, run);
 
   CLI::App* golden = app.add_subcommand(

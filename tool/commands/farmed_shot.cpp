@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "tool/commands/plan_estimate.h"
+#include "tool/report/version.h"
 #include "tool/stages/atomic_file.h"
 #include "tool/stages/process.h"
 #include "tool/stages/scene_stage.h"

@@ -153,31 +153,49 @@ std::vector<Vec3> positions_between(const std::vector<const std::vector<Vec3>*>&
   return result;
 }
 
-SkinnedBody ShotRun::skin_body(std::size_t index, int frame, const SkinRequest& request) {
-  Body& body = *bodies_[index];
-  std::vector<Vec3> previous;
+/// Of the tetrahedra a frame earlier; empty if there is none or nothing asks for it.
+std::vector<Vec3> ShotRun::previous_nodes(Body& body, int frame, const SkinRequest& request) const {
   const bool at_end = frame == shot_.settings.last_frame;
-  if ((request.shutter > 0 || (request.next && at_end)) && frame > first_simulated_frame(shot_))
-    previous = body.simulation->at(frame - 1).state.positions;
+  if (!(request.shutter > 0 || (request.next && at_end)) || frame == first_simulated_frame(shot_)) return {};
+  return body.simulation->at(frame - 1).state.positions;
+}
+
+void ShotRun::skin_times(Body& body, int frame, const SkinRequest& request, const std::vector<Vec3>& previous,
+                         const TakeSkin& take) const {
   const BodyFrame& state = body.simulation->at(frame);
   const FilledBody& filled = body.simulation->filled();
-  const ScopedStage stage(context_.times, "skin");
   std::vector<const std::vector<Vec3>*> steps;
   if (!previous.empty()) steps.push_back(&previous);
   for (const auto& step : state.earlier_steps) steps.push_back(&step);
   steps.push_back(&state.state.positions);
   const bool blurred = request.shutter > 0 && steps.size() > 1;
   const int segments = blurred ? request.segments : 0;
-  SkinnedBody skinned;
   for (int k = 0; k <= segments; ++k) {
-    const double time = segments == 0 ? 0.0 : request.shutter * (static_cast<double>(k) / segments - 1);
-    const std::vector<Vec3> nodes = positions_between(steps, time);
-    SkinnedBody::Time& at = skinned.times.emplace_back();
-    at.positions =
-        skin_positions(body.loaded.surface.positions, filled.embedding, filled.mesh, nodes, context_.threads);
-    if (request.normals)
-      at.normals = skin_normals(filled.normals, filled.embedding, filled.mesh, nodes, context_.threads);
+    SkinnedBody::Time at;
+    {
+      const ScopedStage stage(context_.times, "skin");
+      const double time = segments == 0 ? 0.0 : request.shutter * (static_cast<double>(k) / segments - 1);
+      std::vector<Vec3> nodes = positions_between(steps, time);
+      at.positions =
+          skin_positions(body.loaded.surface.positions, filled.embedding, filled.mesh, nodes, context_.threads);
+      if (request.normals)
+        at.normals = skin_normals(filled.normals, filled.embedding, filled.mesh, nodes, context_.threads);
+      if (request.nodes) at.nodes = std::move(nodes);
+    }
+    take(std::move(at));
   }
+}
+
+void ShotRun::skin_times(std::size_t index, int frame, const SkinRequest& request, const TakeSkin& take) {
+  Body& body = *bodies_[index];
+  skin_times(body, frame, request, previous_nodes(body, frame, request), take);
+}
+
+SkinnedBody ShotRun::skin_body(std::size_t index, int frame, const SkinRequest& request) {
+  Body& body = *bodies_[index];
+  const std::vector<Vec3> previous = previous_nodes(body, frame, request);
+  SkinnedBody skinned;
+  skin_times(body, frame, request, previous, [&](SkinnedBody::Time at) { skinned.times.push_back(std::move(at)); });
   if (request.next) skinned.next_positions = next_positions(body, frame, skinned.times.back().positions, previous);
   return skinned;
 }

@@ -1,6 +1,7 @@
 /// One shot on its way through the stages: bodies loaded at once, filled and simulated when a frame asks for it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,7 @@ struct SkinnedBody {
   struct Time {
     std::vector<Vec3> positions;  ///< as surface.positions, m
     std::vector<Vec3> normals;    ///< empty if not asked for
+    std::vector<Vec3> nodes;      ///< of the tetrahedra, m; empty if not asked for
   };
   std::vector<Time> times;           ///< times.back() is the frame itself
   std::vector<Vec3> next_positions;  ///< at the next frame, if asked for
@@ -37,7 +39,11 @@ struct SkinRequest {
   bool next = false;
   HeatQuantity heat = HeatQuantity::None;
   bool strain = false;
+  bool nodes = false;  ///< of the tetrahedra
 };
+
+/// Takes a body's surface at one time of the shutter.
+using TakeSkin = std::function<void(SkinnedBody::Time)>;
 
 /// What becomes of an error dial that was not turned yet.
 enum class DialUse {
@@ -78,6 +84,9 @@ class ShotRun {
   /// The bodies' surfaces at a frame.
   std::vector<SkinnedBody> skin(int frame, const SkinRequest& request);
   SkinnedBody skin_body(std::size_t body, int frame, const SkinRequest& request);
+  /// The times of skin_body in order, each as soon as it is there, so that only one need be held. `take` may not ask
+  /// for frames.
+  void skin_times(std::size_t body, int frame, const SkinRequest& request, const TakeSkin& take);
   /// A quantity at the vertices of a body's surface at a frame.
   std::vector<double> heat(std::size_t body, int frame, HeatQuantity quantity);
   /// Everything that this quantity depends on, at the frames of the whole shot.
@@ -89,6 +98,9 @@ class ShotRun {
   struct Body;
   void resolve(std::size_t index, BodyConstraints constraints, DialUse use);
 
+  std::vector<Vec3> previous_nodes(Body& body, int frame, const SkinRequest& request) const;
+  void skin_times(Body& body, int frame, const SkinRequest& request, const std::vector<Vec3>& previous,
+                  const TakeSkin& take) const;
   std::vector<Vec3> next_positions(Body& body, int frame, const std::vector<Vec3>& positions,
                                    const std::vector<Vec3>& previous_nodes);
 
