@@ -31,7 +31,7 @@ ShotRun::ShotRun(const Shot& shot, const RunContext& context, DialUse dial) : sh
   // Selections that take nothing are said before the long work starts.
   std::vector<BodyConstraints> constraints;
   for (std::size_t b = 0; b < shot.bodies.size(); ++b)
-    constraints.push_back(resolve_constraints(shot.bodies[b], bodies_[b]->loaded.surface));
+    constraints.push_back(resolve_constraints(shot, shot.bodies[b], bodies_[b]->loaded, context.log));
   for (std::size_t b = 0; b < shot.bodies.size(); ++b) resolve(b, std::move(constraints[b]), dial);
 }
 
@@ -169,6 +169,7 @@ SkinnedBody ShotRun::skin_body(std::size_t index, int frame, const SkinRequest& 
   const bool blurred = request.shutter > 0 && steps.size() > 1;
   const int segments = blurred ? request.segments : 0;
   SkinnedBody skinned;
+  skinned.pull_grabs = state.state.grabs.pulls;
   for (int k = 0; k <= segments; ++k) {
     const double time = segments == 0 ? 0.0 : request.shutter * (static_cast<double>(k) / segments - 1);
     const std::vector<Vec3> nodes = positions_between(steps, time);

@@ -12,6 +12,33 @@
 namespace softreel {
 namespace {
 
+/// Nothing where nothing grabs: so are frames stored that are older than grabbing.
+void pack(const Grabs& grabs, ByteWriter& out) {
+  if (grabs.pins.empty() && grabs.pulls.empty()) return;
+  for (const std::vector<Grab>* list : {&grabs.pins, &grabs.pulls}) {
+    out.put(static_cast<std::uint64_t>(list->size()));
+    for (const Grab& grab : *list) {
+      out.put(grab.range);
+      out.put(grab.frame);
+      out.put_array(grab.positions);
+    }
+  }
+}
+
+Grabs unpack_grabs(ByteReader& in) {
+  Grabs grabs;
+  if (in.at_end()) return grabs;
+  for (std::vector<Grab>* list : {&grabs.pins, &grabs.pulls}) {
+    list->resize(in.get<std::uint64_t>());
+    for (Grab& grab : *list) {
+      grab.range = in.get<Index>();
+      grab.frame = in.get<double>();
+      grab.positions = in.get_array<Vec3>();
+    }
+  }
+  return grabs;
+}
+
 Bytes pack(const BodyFrame& frame) {
   ByteWriter out;
   out.put_array(frame.state.positions);
@@ -26,6 +53,7 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.troubles);
   out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
   for (const auto& step : frame.earlier_steps) out.put_array(step);
+  pack(frame.state.grabs, out);
   return out.take();
 }
 
@@ -44,12 +72,13 @@ BodyFrame unpack(std::span<const std::uint8_t> bytes) {
   frame.state.troubles = in.get_array<ElementTrouble>();
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
+  frame.state.grabs = unpack_grabs(in);
   return frame;
 }
 
 StageKey materials_key(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded) {
   KeyHasher key("materials");
-  add_materials(key, shot, settings, loaded.surface);
+  add_materials(key, shot, settings, loaded);
   return key.key();
 }
 
@@ -233,6 +262,10 @@ BodyFrame BodySimulation::simulated(int frame) {
   }
   const bool is_start = frame == first_simulated_frame(shot_);
   if (is_start && !is_static && settings.start == StartState::Rest) {
+    if (has_grabs(constraints_)) {
+      simulator().start_grabs(frame);
+      frame_.state = simulator_->state();
+    }
     result.state = frame_.state;
     return result;
   }
