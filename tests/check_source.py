@@ -18,7 +18,7 @@ RENDER_MAY = {"base", "mesh"}
 
 # Header pattern, the only files that may include it.
 FENCES = [
-    (r"<assimp/", r"core/mesh/readers/assimp_reader\.cpp$"),
+    (r"<assimp/", r"core/mesh/readers/assimp_(scene_)?reader\.cpp$"),
     (r"<(tbb|oneapi)/", r"core/base/parallel\.(h|cpp)$"),
     (r"<embree3/", r"render/pathtrace/ray_scene_embree\.cpp$"),
     (r"<(EGL|GL|epoxy)/", r"render/preview/egl/[a-z_]+\.(cpp|h)$"),

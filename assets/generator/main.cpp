@@ -1,4 +1,4 @@
-/// make_assets DIRECTORY [NAME...]: writes the meshes and textures that the presets use, all or those named.
+/// make_assets DIRECTORY [NAME...]: writes the meshes, textures and rigs that the presets use, all or those named.
 #include <algorithm>
 #include <exception>
 #include <fstream>
@@ -8,6 +8,7 @@
 
 #include "assets/generator/pictures.h"
 #include "assets/generator/ply_write.h"
+#include "assets/generator/rig.h"
 #include "assets/generator/sculpture.h"
 #include "assets/generator/surface_nets.h"
 #include "core/base/error.h"
@@ -33,9 +34,7 @@ struct Picture {
   DisplayImage (*make)();
 };
 
-void write(const Picture& picture, const std::string& directory) {
-  const std::string path = directory + "/" + picture.name + ".png";
-  const std::vector<std::uint8_t> bytes = encode_png(picture.make());
+void write(const std::vector<std::uint8_t>& bytes, const std::string& path) {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   file.close();
@@ -45,10 +44,12 @@ void write(const Picture& picture, const std::string& directory) {
 
 int run(const std::vector<std::string>& arguments) {
   const Sculpture all[] = {make_creature(), make_colt(), make_bar(), make_octopus(), make_pudding()};
+  const Rig rig = make_puppet();
   const Picture pictures[] = {{"patchwork", make_patchwork}, {"weave_normals", make_weave_normals}};
   std::vector<std::string> known;
   for (const Sculpture& s : all) known.push_back(s.name);
   for (const Picture& p : pictures) known.push_back(p.name);
+  known.push_back(rig.name);
   std::string names;
   for (const std::string& name : known) names += " " + name;
   if (arguments.empty()) throw input_error("make_assets: no folder is given. Call make_assets DIRECTORY [NAME...].");
@@ -62,7 +63,8 @@ int run(const std::vector<std::string>& arguments) {
   for (const Sculpture& s : all)
     if (is_wanted(s.name)) make(s, arguments[0], threads);
   for (const Picture& p : pictures)
-    if (is_wanted(p.name)) write(p, arguments[0]);
+    if (is_wanted(p.name)) write(encode_png(p.make()), arguments[0] + "/" + p.name + ".png");
+  if (is_wanted(rig.name)) write(encode_glb(rig), arguments[0] + "/" + rig.name + ".glb");
   return 0;
 }
 

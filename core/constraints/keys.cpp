@@ -35,10 +35,16 @@ Vec3 Transform::apply(const Vec3& p) const {
   return pivot + z * (y * (x * scaled)) + translate;
 }
 
+Index active_range(const std::vector<FrameRange>& ranges, double frame) {
+  if (ranges.empty()) return 0;
+  const auto found = std::find_if(ranges.begin(), ranges.end(), [frame](const FrameRange& range) {
+    return range.first <= frame && frame <= range.last;
+  });
+  return found == ranges.end() ? -1 : static_cast<Index>(found - ranges.begin());
+}
+
 bool is_active(const std::vector<FrameRange>& ranges, double frame) {
-  return ranges.empty() || std::any_of(ranges.begin(), ranges.end(), [frame](const FrameRange& range) {
-           return range.first <= frame && frame <= range.last;
-         });
+  return active_range(ranges, frame) >= 0;
 }
 
 }  // namespace softreel

@@ -65,6 +65,9 @@ struct FrameRange {
   double first = 0, last = 0;
 };
 
+/// Number of the first range that `frame` lies in, 0 where there is no range at all, which means always; else -1.
+Index active_range(const std::vector<FrameRange>& ranges, double frame);
+
 /// True if `frame` lies in one of the ranges; no range at all means always.
 bool is_active(const std::vector<FrameRange>& ranges, double frame);
 

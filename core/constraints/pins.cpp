@@ -1,8 +1,11 @@
 #include "core/constraints/pins.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
+
+#include "core/constraints/targets.h"
 
 namespace softreel {
 namespace {
@@ -10,15 +13,13 @@ namespace {
 /// Pins agree on a node if their targets differ by less than this share of the body's size.
 constexpr double kAgreement = 1e-9;
 
-std::vector<Index> held_nodes(const Pin& pin, const Embedding& embedding, const TetMesh& mesh) {
-  std::vector<Index> nodes;
-  for (const Index point : pin.points) {
-    const Tet& tet = mesh.tets[static_cast<std::size_t>(embedding.elements[static_cast<std::size_t>(point)])];
-    nodes.insert(nodes.end(), tet.begin(), tet.end());
-  }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
+/// Position of a surface point at rest.
+Vec3 rest_point(std::size_t point, const Embedding& embedding, const TetMesh& mesh) {
+  const Tet& tet = mesh.tets[static_cast<std::size_t>(embedding.elements[point])];
+  Vec3 position = Vec3::Zero();
+  for (std::size_t k = 0; k < 4; ++k)
+    position += embedding.weights[point][k] * mesh.nodes[static_cast<std::size_t>(tet[k])];
+  return position;
 }
 
 double box_diagonal(const std::vector<Vec3>& points) {
@@ -31,20 +32,64 @@ double box_diagonal(const std::vector<Vec3>& points) {
 
 NodePins::NodePins(std::vector<Pin> pins, const Embedding& embedding, const TetMesh& mesh)
     : pins_(std::move(pins)), rest_positions_(mesh.nodes), agreement_(kAgreement * box_diagonal(mesh.nodes)) {
-  for (const Pin& pin : pins_) nodes_.push_back(held_nodes(pin, embedding, mesh));
+  for (const Pin& pin : pins_) held_.push_back(held_by(pin, embedding, mesh));
 }
 
-PinnedNodes NodePins::at(double frame) const {
+NodePins::Held NodePins::held_by(const Pin& pin, const Embedding& embedding, const TetMesh& mesh) {
+  struct Nearest {
+    double squared_distance = 1e300;
+    std::size_t point = 0;  ///< of the pin's points
+  };
+  std::map<Index, Nearest> nearest;
+  for (std::size_t k = 0; k < pin.points.size(); ++k) {
+    const auto point = static_cast<std::size_t>(pin.points[k]);
+    const Vec3 place = rest_point(point, embedding, mesh);
+    for (const Index node : mesh.tets[static_cast<std::size_t>(embedding.elements[point])]) {
+      Nearest& best = nearest[node];
+      const double d = (mesh.nodes[static_cast<std::size_t>(node)] - place).squaredNorm();
+      if (d < best.squared_distance) best = {d, k};
+    }
+  }
+  Held held;
+  for (const auto& [node, best] : nearest) {
+    held.nodes.push_back(node);
+    held.rest.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
+    if (!pin.ties.empty()) held.ties.push_back(pin.ties[best.point]);
+  }
+  return held;
+}
+
+bool NodePins::grab() const {
+  return std::any_of(pins_.begin(), pins_.end(), [](const Pin& pin) { return pin.grab; });
+}
+
+void NodePins::update(std::span<Grab> grabs, double frame, std::span<const Vec3> positions) const {
+  for (std::size_t p = 0; p < grabs.size(); ++p) {
+    if (!pins_[p].grab) continue;
+    update_grab(grabs[p], active_range(pins_[p].active, frame), frame, [&] {
+      std::vector<Vec3> grabbed;
+      for (const Index node : held_[p].nodes) grabbed.push_back(positions[static_cast<std::size_t>(node)]);
+      return grabbed;
+    });
+  }
+}
+
+PinnedNodes NodePins::at(double frame, std::span<const Grab> grabs) const {
   PinnedNodes pinned;
   pinned.held.assign(rest_positions_.size(), 0);
   pinned.targets.assign(rest_positions_.size(), Vec3::Zero());
+  const Grab nothing;
   std::vector<std::size_t> owner(rest_positions_.size(), 0);
   for (std::size_t p = 0; p < pins_.size(); ++p) {
-    if (!is_active(pins_[p].active, frame)) continue;
-    const Transform transform = pins_[p].track.at(frame);
-    for (const Index node : nodes_[p]) {
-      const auto i = static_cast<std::size_t>(node);
-      const Vec3 target = transform.apply(rest_positions_[i]);
+    const Pin& pin = pins_[p];
+    const Held& its = held_[p];
+    const Index range = active_range(pin.active, frame);
+    const Grab& grab = pin.grab && p < grabs.size() ? grabs[p] : nothing;
+    if (range < 0 || (pin.grab && grab.range != range)) continue;
+    const std::vector<Vec3> targets = guided_points({pin.track, pin.follow, its.ties}, its.rest, frame, grab);
+    for (std::size_t n = 0; n < targets.size(); ++n) {
+      const auto i = static_cast<std::size_t>(its.nodes[n]);
+      const Vec3& target = targets[n];
       if (pinned.held[i] == 0) {
         pinned.held[i] = 1;
         pinned.targets[i] = target;
@@ -55,7 +100,7 @@ PinnedNodes NodePins::at(double frame) const {
             "{} and {} want node {} at different places at frame {}: ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, "
             "{:.6g}).\n  Accepted: pins that share a tetrahedron move it alike. Select points that are farther apart, "
             "or let the pins be active at different frames.",
-            pins_[owner[i]].name, pins_[p].name, node, frame, pinned.targets[i].x(), pinned.targets[i].y(),
+            pins_[owner[i]].name, pin.name, i, frame, pinned.targets[i].x(), pinned.targets[i].y(),
             pinned.targets[i].z(), target.x(), target.y(), target.z());
       }
     }

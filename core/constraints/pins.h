@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,16 +27,31 @@ class NodePins {
   /// A pin holds every node of each tetrahedron that carries one of its points, so that the skinned points are exact.
   NodePins(std::vector<Pin> pins, const Embedding& embedding, const TetMesh& mesh);
 
-  /// Nodes that active pins hold at `frame`. Two pins may share a node where they agree to 1e-9 of the body's size.
-  PinnedNodes at(double frame) const;
+  /// Nodes that active pins hold at `frame`; a grabbing pin holds what it grabbed, nothing before. Two pins may share a
+  /// node where they agree to 1e-9 of the body's size. A node of a pin that follows a surface moves as the surroundings
+  /// of the nearest of the pin's points whose tetrahedra it belongs to: points are exact where the surface moves all of
+  /// their tetrahedron by one affine map, else to second order of its size.
+  PinnedNodes at(double frame, std::span<const Grab> grabs = {}) const;
+
+  /// What grabbing pins hold once a step has ended at `frame` with the nodes at `positions`. grabs: per pin.
+  void update(std::span<Grab> grabs, double frame, std::span<const Vec3> positions) const;
+  bool grab() const;
 
   /// The first conflict at a frame where two pins could start to differ: their keys and the ends of their ranges.
-  /// Empty if there is none; between keys `at` still looks.
+  /// Empty if there is none; between keys, and of pins that grab, `at` still looks.
   std::string find_conflict() const;
 
  private:
+  /// The nodes of a pin.
+  struct Held {
+    std::vector<Index> nodes;     ///< sorted
+    std::vector<Vec3> rest;       ///< per node
+    std::vector<FollowTie> ties;  ///< per node; empty where its pin has none
+  };
+  static Held held_by(const Pin& pin, const Embedding& embedding, const TetMesh& mesh);
+
   std::vector<Pin> pins_;
-  std::vector<std::vector<Index>> nodes_;  ///< per pin, sorted
+  std::vector<Held> held_;  ///< per pin
   std::vector<Vec3> rest_positions_;
   double agreement_ = 0;  ///< m
 };

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/constraints/targets.h"
+
 namespace softreel {
 namespace {
 
@@ -27,20 +29,32 @@ Spring make_spring(const Vec3& rest_point, const Tet& tet, const std::array<doub
 
 }  // namespace
 
+std::vector<Vec3> pull_targets(const Pull& pull, const std::vector<Vec3>& surface_points, double frame,
+                               const Grab& grab) {
+  std::vector<Vec3> rest;
+  rest.reserve(pull.points.size());
+  for (const Index point : pull.points) rest.push_back(surface_points[static_cast<std::size_t>(point)]);
+  return guided_points({pull.track, pull.follow, pull.ties}, rest, frame, grab);
+}
+
 std::vector<ActivePull> active_pulls(const std::vector<Pull>& pulls, const std::vector<Vec3>& surface_points,
-                                     const Embedding& embedding, const TetMesh& mesh, double frame) {
+                                     const Embedding& embedding, const TetMesh& mesh, double frame,
+                                     std::span<const Grab> grabs) {
+  const Grab nothing;
   std::vector<ActivePull> active;
-  for (const Pull& pull : pulls) {
-    if (!is_active(pull.active, frame)) continue;
+  for (std::size_t p = 0; p < pulls.size(); ++p) {
+    const Pull& pull = pulls[p];
+    const Index range = pulling_range(pull, frame);
+    const Grab& grab = pull.grab && p < grabs.size() ? grabs[p] : nothing;
+    if (range < 0 || (pull.grab && grab.range != range)) continue;
     const double stiffness = pull.stiffness.at(frame);
-    if (!(stiffness > 0)) continue;
-    const Transform transform = pull.track.at(frame);
+    const std::vector<Vec3> targets = pull_targets(pull, surface_points, frame, grab);
     ActivePull result{{}, 0, pull.max_force};
     for (std::size_t k = 0; k < pull.points.size(); ++k) {
       const auto point = static_cast<std::size_t>(pull.points[k]);
       Spring spring = make_spring(surface_points[point], mesh.tets[static_cast<std::size_t>(embedding.elements[point])],
                                   embedding.weights[point], mesh);
-      spring.target = transform.apply(surface_points[point]);
+      spring.target = targets[k];
       spring.stiffness = stiffness * pull.weights[k];
       result.stiffness += spring.stiffness;
       result.springs.push_back(spring);
@@ -48,6 +62,24 @@ std::vector<ActivePull> active_pulls(const std::vector<Pull>& pulls, const std::
     active.push_back(std::move(result));
   }
   return active;
+}
+
+void update_grabs(const std::vector<Pull>& pulls, const std::vector<Vec3>& surface_points, const Embedding& embedding,
+                  const TetMesh& mesh, std::span<const Vec3> positions, double frame, std::span<Grab> grabs) {
+  for (std::size_t p = 0; p < grabs.size(); ++p) {
+    if (!pulls[p].grab) continue;
+    update_grab(grabs[p], pulling_range(pulls[p], frame), frame, [&] {
+      std::vector<Vec3> grabbed;
+      for (const Index index : pulls[p].points) {
+        const auto point = static_cast<std::size_t>(index);
+        const Spring spring =
+            make_spring(surface_points[point], mesh.tets[static_cast<std::size_t>(embedding.elements[point])],
+                        embedding.weights[point], mesh);
+        grabbed.push_back(-stretch(spring, positions));  // from a target at the origin
+      }
+      return grabbed;
+    });
+  }
 }
 
 double pull_factor(const ActivePull& pull, std::span<const Vec3> positions) {

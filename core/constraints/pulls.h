@@ -38,9 +38,19 @@ struct ActivePull {
   bool operator==(const ActivePull&) const = default;
 };
 
-/// Pulls that are active at `frame` with stiffness above 0.
+/// Pulls that are active at `frame` with stiffness above 0; one that grabs pulls with what it grabbed, not before.
+/// grabs: per pull.
 std::vector<ActivePull> active_pulls(const std::vector<Pull>& pulls, const std::vector<Vec3>& surface_points,
-                                     const Embedding& embedding, const TetMesh& mesh, double frame);
+                                     const Embedding& embedding, const TetMesh& mesh, double frame,
+                                     std::span<const Grab> grabs = {});
+
+/// Where the springs of a pull are fixed at `frame`, per point. surface_points: at rest.
+std::vector<Vec3> pull_targets(const Pull& pull, const std::vector<Vec3>& surface_points, double frame,
+                               const Grab& grab = {});
+
+/// What grabbing pulls hold once a step has ended at `frame` with the nodes at `positions`. grabs: per pull.
+void update_grabs(const std::vector<Pull>& pulls, const std::vector<Vec3>& surface_points, const Embedding& embedding,
+                  const TetMesh& mesh, std::span<const Vec3> positions, double frame, std::span<Grab> grabs);
 
 /// Factor on the stiffness that keeps to max_force, in (0, 1].
 double pull_factor(const ActivePull& pull, std::span<const Vec3> positions);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/check.h"
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/mesh/point_tree.h"
@@ -48,7 +49,7 @@ PointTest plane_test(const SelectPlane& shape, SelectionUnit unit, const Bounds&
   return [point, normal](const Vec3& p) { return normal.dot(p - point) >= 0; };
 }
 
-/// The test that the shape's place in space decides; none for groups and nearest points.
+/// The test that the shape's place in space decides; none for groups, nearest points and weights.
 std::optional<PointTest> space_test(const SelectionTerm& term, const Bounds& box) {
   if (const auto* shape = std::get_if<SelectBox>(&term.shape)) return box_test(*shape, term.unit, box);
   if (const auto* shape = std::get_if<SelectSphere>(&term.shape)) return sphere_test(*shape, term.unit, box);
@@ -102,8 +103,8 @@ std::vector<Index> nearest_vertices(const SelectNearest& shape, const Vec3& poin
 }
 
 /// Marks the used vertices that one term takes.
-void mark_term(const SelectionTerm& term, const SurfaceMesh& surface, const Bounds& box, const std::vector<Index>& used,
-               std::vector<char>& marked) {
+void mark_term(const SelectionTerm& term, const SurfaceMesh& surface, std::span<const WeightMap> maps,
+               const Bounds& box, const std::vector<Index>& used, std::vector<char>& marked) {
   if (const std::optional<PointTest> test = space_test(term, box)) {
     for (const Index v : used)
       if ((*test)(surface.positions[static_cast<std::size_t>(v)])) marked[static_cast<std::size_t>(v)] = 1;
@@ -112,26 +113,38 @@ void mark_term(const SelectionTerm& term, const SurfaceMesh& surface, const Boun
   } else if (const auto* nearest = std::get_if<SelectNearest>(&term.shape)) {
     const Vec3 point = scene_point(nearest->point, term.unit, box);
     for (const Index v : nearest_vertices(*nearest, point, surface, used)) marked[static_cast<std::size_t>(v)] = 1;
+  } else if (const auto* painted = std::get_if<SelectWeights>(&term.shape)) {
+    const std::vector<double>& weights = weights_of(painted->source, maps);
+    for (const Index v : used)
+      if (weights[static_cast<std::size_t>(v)] >= painted->threshold) marked[static_cast<std::size_t>(v)] = 1;
   }
 }
 
 }  // namespace
 
-std::vector<Index> select_points(const Selection& selection, const SurfaceMesh& surface) {
+const std::vector<double>& weights_of(const WeightSource& source, std::span<const WeightMap> maps) {
+  const auto found = std::find_if(maps.begin(), maps.end(), [&](const WeightMap& map) { return map.source == source; });
+  CHECK(found != maps.end());
+  return found->weights;
+}
+
+std::vector<Index> select_points(const Selection& selection, const SurfaceMesh& surface,
+                                 std::span<const WeightMap> maps) {
   const std::vector<Index> used = used_vertices(surface);
   const Bounds box = used_bounds(surface);
   std::vector<char> marked(surface.positions.size(), 0);
-  for (const SelectionTerm& term : selection.terms) mark_term(term, surface, box, used, marked);
+  for (const SelectionTerm& term : selection.terms) mark_term(term, surface, maps, box, used, marked);
   std::vector<Index> points;
   for (const Index v : used)
     if (marked[static_cast<std::size_t>(v)] != 0) points.push_back(v);
   return points;
 }
 
-std::vector<bool> contains(const Selection& selection, const SurfaceMesh& surface, const std::vector<Vec3>& points) {
+std::vector<bool> contains(const Selection& selection, const SurfaceMesh& surface, const std::vector<Vec3>& points,
+                           std::span<const WeightMap> maps) {
   const Bounds box = used_bounds(surface);
   std::vector<bool> inside(points.size(), false);
-  Selection of_surface;  // groups and nearest points
+  Selection of_surface;  // groups, nearest points and weights
   for (const SelectionTerm& term : selection.terms) {
     const std::optional<PointTest> test = space_test(term, box);
     if (!test) {
@@ -142,7 +155,7 @@ std::vector<bool> contains(const Selection& selection, const SurfaceMesh& surfac
   }
   if (of_surface.terms.empty()) return inside;
   std::vector<char> is_member(surface.positions.size(), 0);
-  for (const Index v : select_points(of_surface, surface)) is_member[static_cast<std::size_t>(v)] = 1;
+  for (const Index v : select_points(of_surface, surface, maps)) is_member[static_cast<std::size_t>(v)] = 1;
   const std::vector<Index> used = used_vertices(surface);
   std::vector<Vec3> used_positions;
   for (const Index v : used) used_positions.push_back(surface.positions[static_cast<std::size_t>(v)]);

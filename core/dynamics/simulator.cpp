@@ -90,8 +90,8 @@ const FloatAssembler& Simulator::Parts::float_assembler() {
   return *assembler_in_float;
 }
 
-std::vector<ActivePull> Simulator::Parts::pulls_at(double frame) const {
-  return active_pulls(model.pulls, model.surface_points, model.embedding, model.mesh, frame);
+std::vector<ActivePull> Simulator::Parts::pulls_at(double frame, const Grabs& grabs) const {
+  return active_pulls(model.pulls, model.surface_points, model.embedding, model.mesh, frame, grabs.pulls);
 }
 
 void Simulator::Parts::gather_all_forces(std::span<const Vec3> positions, const std::vector<ActivePull>& pulls,
@@ -113,9 +113,12 @@ std::vector<std::uint8_t> Simulator::Parts::held_pieces(const PinnedNodes& pinne
 }
 
 std::string Simulator::Parts::find_boundless_pull(double frame, std::span<const Vec3> positions) const {
-  for (const Pull& pull : model.pulls) {
+  for (std::size_t p = 0; p < model.pulls.size(); ++p) {
+    const Pull& pull = model.pulls[p];
+    const Grab grab = p < state.grabs.pulls.size() ? state.grabs.pulls[p] : Grab{};
     std::vector<Vec3> forces(positions.size(), Vec3::Zero());
-    for (const ActivePull& active : active_pulls({pull}, model.surface_points, model.embedding, model.mesh, frame))
+    for (const ActivePull& active :
+         active_pulls({pull}, model.surface_points, model.embedding, model.mesh, frame, {&grab, 1}))
       add_pull_forces(active, positions, forces);
     double square = 0;
     for (const Vec3& force : forces) square += force.squaredNorm();
@@ -182,6 +185,8 @@ void Simulator::set_state(SimulationState state) {
   for (const auto* memory :
        {&state.previous_positions, &state.previous_velocities, &state.accelerations, &state.previous_accelerations})
     if (!memory->empty()) CHECK(memory->size() == parts_->nodes());
+  CHECK((state.grabs.pins.empty() || state.grabs.pins.size() == parts_->model.pins.size()));
+  CHECK((state.grabs.pulls.empty() || state.grabs.pulls.size() == parts_->model.pulls.size()));
   CHECK((state.troubles.empty() || state.troubles.size() == parts_->body.tets.size()));
   parts_->state = std::move(state);
   parts_->coarse_lag.usable = false;

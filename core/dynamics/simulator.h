@@ -89,6 +89,7 @@ struct SimulationState {
   double previous_error = 0;                   ///< error control: of the last step, over the body's size
   double previous_seconds = 0;                 ///< BDF2, Newmark, error control: length of the last step
   ElementTroubles troubles = {};               ///< of recovery: empty while all is well
+  Grabs grabs = {};                            ///< of pins and pulls that grab
 };
 
 /// What a step did. If it could not be solved, `culprit` names the element (with its centroid) or constraint to blame.
@@ -126,6 +127,10 @@ class Simulator {
   /// The integrator's memory may be empty; then the next step is taken as a first one.
   void set_state(SimulationState state);
 
+  /// Pins and pulls that grab and are on at `frame` take what the present state has, if they have not yet: to be called
+  /// where steps start from a state at that frame without a history. Steps and equilibria do so by themselves.
+  void start_grabs(double frame);
+
   /// One step of `seconds` from the present state; constraints are those at `frame`, the step's end. Nodes under a pin
   /// reach their targets exactly. On failure the state is left as it was. BDF2's first step is one of Euler; Newmark's
   /// starts from the acceleration that the forces give. A body at rest is left as it is, to the last bit.
@@ -136,8 +141,8 @@ class Simulator {
   StepReport step(double frame, double seconds, double error_limit = std::numeric_limits<double>::infinity());
 
   /// Static equilibrium under the constraints at `frame`, by Newton with line search and load stepping from the present
-  /// state; velocities become zero. A body without pins or pulls under no load keeps its rigid placement. On failure
-  /// the state is left as it was.
+  /// state; velocities become zero. What grabs and starts at this frame grabs the present state. A body without pins or
+  /// pulls under no load keeps its rigid placement. On failure the state is left as it was.
   StepReport find_equilibrium(double frame);
 
   StateMeasures measure() const;

@@ -86,7 +86,11 @@ struct Simulator::Parts {
 
   std::size_t nodes() const { return model.mesh.nodes.size(); }
 
-  std::vector<ActivePull> pulls_at(double frame) const;
+  /// Pulls at a frame that grab what `grabs` says.
+  std::vector<ActivePull> pulls_at(double frame, const Grabs& grabs) const;
+  bool has_grabs() const;
+  /// What pins and pulls grab once the body has come to `frame` in the present state.
+  Grabs grabs_at(double frame) const;
   /// Gravity, elasticity (of `stresses`) and pulls on the nodes, N.
   void gather_all_forces(std::span<const Vec3> positions, const std::vector<ActivePull>& pulls,
                          std::span<Vec3> forces) const;

@@ -75,8 +75,9 @@ SolveReport solve_in_steps(const Simulator::Parts& parts, StaticSolver& solver, 
 StepReport Simulator::Parts::find_equilibrium(double frame) {
   coarse_lag.usable = false;
   known_rest.known = false;
-  const PinnedNodes pinned = pins.at(frame);
-  const std::vector<ActivePull> pulls = pulls_at(frame);
+  Grabs grabs = grabs_at(frame);
+  const PinnedNodes pinned = pins.at(frame, grabs.pins);
+  const std::vector<ActivePull> pulls = pulls_at(frame, grabs);
   StepReport report;
   if (!pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
@@ -96,6 +97,7 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
     return report;
   }
   state = {std::move(next.positions), std::vector<Vec3>(nodes(), Vec3::Zero()), std::move(next.rotations)};
+  state.grabs = std::move(grabs);
   return report;
 }
 

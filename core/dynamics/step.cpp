@@ -172,6 +172,7 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
     }
   }
   next.troubles = std::move(work.troubles);
+  next.grabs = parts.state.grabs;
   remember(parts.params, work.step, parts.state, work.pinned.held, work.pinned.targets, next);
   return next;
 }
@@ -248,7 +249,17 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work) {
 }
 
 StepReport Simulator::Parts::step(double frame, double seconds, double error_limit) {
-  StepWork work{{}, pins.at(frame), pulls_at(frame), {}, state.rotations, {}, {}, {}, {}, {}, state.troubles};
+  StepWork work{{},
+                pins.at(frame, state.grabs.pins),
+                pulls_at(frame, state.grabs),
+                {},
+                state.rotations,
+                {},
+                {},
+                {},
+                {},
+                {},
+                state.troubles};
   StepReport report;
   if (!work.pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
@@ -260,6 +271,7 @@ StepReport Simulator::Parts::step(double frame, double seconds, double error_lim
     if (ends_frame) coarse_lag.usable = false;
     report.nonlinear_iterations = 0;
     report.at_rest = true;
+    state.grabs = grabs_at(frame);
     return report;
   }
   const bool first = lacks_accelerations(params, state);
@@ -268,6 +280,7 @@ StepReport Simulator::Parts::step(double frame, double seconds, double error_lim
   report = solve_step(*this, frame, work);
   if (ends_frame) coarse_lag.usable = false;
   if (report.ok()) accept_or_reject(*this, work, error_limit, report);
+  if (report.ok() && !report.rejected) state.grabs = grabs_at(frame);
   if (first && (!report.ok() || report.rejected)) state.accelerations.clear();
   if (!report.ok()) report.culprit = find_culprit(frame, state.positions, work.right_side);
   return report;

@@ -20,12 +20,12 @@ function(softreel_part name found package)
   set(SOFTREEL_PART_TABLE "${SOFTREEL_PART_TABLE}\n  ${name}: ${value}  (${package}, asked: ${wanted})" PARENT_SCOPE)
 endfunction()
 
-# softreel_add_part(OWNER NAME SOURCE file COPIES files...): the one source that includes the libraries of a part. OWNER,
-# which calls it through core/base/part.h, is compiled with SOFTREEL_WITH_NAME=0|1.
-# With SOFTREEL_LAZY_PARTS it becomes the module softreel_part_NAME.so. That needs nothing of the program: the few other
-# sources of softreel that it calls, COPIES, are compiled into it as well.
+# softreel_add_part(OWNER NAME SOURCE files... COPIES files...): the sources that include the libraries of a part. OWNER,
+# which calls them through core/base/part.h, is compiled with SOFTREEL_WITH_NAME=0|1.
+# With SOFTREEL_LAZY_PARTS they become the module softreel_part_NAME.so. That needs nothing of the program: the few other
+# sources of softreel that they call, COPIES, are compiled into it as well.
 function(softreel_add_part owner name)
-  cmake_parse_arguments(PARSE_ARGV 2 part "" "SOURCE" "COPIES")
+  cmake_parse_arguments(PARSE_ARGV 2 part "" "" "SOURCE;COPIES")
   target_compile_definitions(${owner} PRIVATE SOFTREEL_WITH_${name}=${SOFTREEL_HAS_${name}})
   if(NOT SOFTREEL_HAS_${name})
     return()

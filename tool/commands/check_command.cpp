@@ -21,7 +21,7 @@ int run_check(const ShotOptions& options) {
     return 0;
   }
   for (std::size_t b = 0; b < run.body_count(); ++b) {
-    const BodyConstraints constraints = resolve_constraints(run.settings(b), run.loaded(b).surface);
+    const BodyConstraints constraints = resolve_constraints(run.shot(), run.settings(b), run.loaded(b), Log{});
     const Vec3 size = used_bounds(run.loaded(b).surface).size();
     std::printf("%s: %s: %lld vertices, %lld triangles, %.4g x %.4g x %.4g m\n", report.bodies[b].name.c_str(),
                 report.bodies[b].mesh.c_str(), static_cast<long long>(report.bodies[b].vertices),

@@ -5,6 +5,7 @@
 #include "tool/shot/codecs.h"
 #include "tool/shot/keyed_appearance.h"
 #include "tool/shot/schema_tables.h"
+#include "tool/shot/shot_follow.h"
 #include "tool/shot/shot_select.h"
 
 namespace softreel {
@@ -62,12 +63,23 @@ void add_motion_fields(Table<S>& table) {
     out.keys = std::move(motion.track);
     out.pivot_given = motion.pivot_given;
   };
-  keys.write = [print = codec.print](const S& in) { return print({in.keys, in.pivot_given}); };
+  keys.write = [print = codec.print](const S& in) -> std::optional<TomlValue> {
+    if (in.follow) return std::nullopt;
+    return print({in.keys, in.pivot_given});
+  };
   table.fields.push_back(std::move(keys));
   table
       .add("keys_unit", &S::keys_in_box, choice<bool>({{"m", false}, {"box", true}}), "",
            "What translate and pivot of the keys count: metres, or heights and coordinates of the placed body's box.")
-      .add("active", &S::active, frame_ranges_codec(), "frames", "When it holds, both frames included.", "always");
+      .add("active", &S::active, frame_ranges_codec(), "frames", "When it holds, both frames included.", "always")
+      .add("follow", &S::follow, follow_codec(), "",
+           "An animated node or surface that takes the points along; instead "
+           "of keys.",
+           "none")
+      .add("grab", &S::grab, absent_if_zero(toggle()), "",
+           "Takes the points where they are at the first active frame, without a jump, and moves them on from there as "
+           "keys or what is followed moves.",
+           "false");
 }
 
 const Table<PinSettings>& pin_table() {
@@ -76,7 +88,8 @@ const Table<PinSettings>& pin_table() {
     t.sentence = "Points that are held exactly, where they rest or where keys take them.";
     t.require("select", &PinSettings::select, selection_codec(), "", "Which points of the surface are held.");
     add_motion_fields(t);
-    t.check = [](const Place&, const TomlValue&, PinSettings& pin) {
+    t.check = [](const Place& place, const TomlValue& value, PinSettings& pin) {
+      check_alternatives(place, value, "body.*.pin[]");
       if (pin.keys.keys.empty()) pin.keys = resting_track();
     };
     return t;
@@ -89,13 +102,19 @@ const Table<PullSettings>& pull_table() {
     using P = PullSettings;
     Table<P> t;
     t.sentence = "Springs from points to where keys take them; the points give way as far as the body resists.";
-    t.require("select", &P::select, selection_codec(), "", "Which points of the surface are pulled.")
+    t.add("select", &P::select, selection_codec(), "", "Which points of the surface are pulled.",
+          "must be given, but with weights: the points of a weight above 0")
         .require("stiffness", &P::stiffness, keyed(number(kNotNegative), "N/m"), "N/m", "Of all springs together.");
     add_motion_fields(t);
     t.add("falloff", &P::falloff, number(kNotNegative), "m",
           "Springs weaken smoothly to nothing at this distance from the selection's centre; 0: all are equal.")
-        .add("max_force", &P::max_force, number(kNotNegative), "N", "Of all springs together; 0: no limit.");
-    t.check = [](const Place&, const TomlValue&, PullSettings& pull) {
+        .add("max_force", &P::max_force, number(kNotNegative), "N", "Of all springs together; 0: no limit.")
+        .add("weights", &P::weights, weights_codec(), "",
+             "Painted weights, factors on the springs' shares of the stiffness: a soft pin where keys move nothing.",
+             "1 everywhere");
+    t.check = [select = t.fields.front().text](const Place& place, const TomlValue& value, PullSettings& pull) {
+      check_alternatives(place, value, "body.*.pull[]");
+      if (pull.select.terms.empty() && !pull.weights) throw missing_error(place, value, select);
       if (pull.keys.keys.empty()) pull.keys = resting_track();
     };
     return t;

@@ -246,6 +246,8 @@ const std::vector<Alternatives>& alternatives() {
   static const std::vector<Alternatives> all{{"body.*", {"tets", "edge", "error", "tetrahedra"}},
                                              {"body.*", {"fit", "scale"}},
                                              {"body.*.region[]", {"material", "stiffness"}},
+                                             {"body.*.pin[]", {"keys", "follow"}},
+                                             {"body.*.pull[]", {"keys", "follow"}},
                                              {"material.*", {"base_color", "base_color_texture", "vertex_colors"}},
                                              {"material.*", {"roughness", "roughness_texture"}}};
   return all;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/constraints/followed_surface.h"
 #include "core/constraints/keys.h"
 #include "core/constraints/selection.h"
 #include "core/dynamics/simulator.h"
@@ -97,17 +98,33 @@ struct RegionSettings {
   Origin origin;
 };
 
+/// What pins and pulls follow instead of keys.
+struct FollowSettings {
+  std::string file;                 ///< resolved path of a scene or point cache
+  std::string node;                 ///< of the scene, followed rigidly; or
+  std::string mesh;                 ///< its surface; both empty: the surface of all meshes
+  std::string clip;                 ///< empty: the only one
+  std::optional<double> start;      ///< frame at which the clip starts; none: the shot's first frame
+  double speed = 1;                 ///< seconds of the clip a second of the shot
+  std::optional<double> reference;  ///< frame at which it belongs to the body at rest; none: the file's rest pose
+  bool in_scene = false;            ///< the file's numbers are metres in the scene; false: placed as the body's mesh
+  std::optional<FollowedSurface::Binding> bind;  ///< none: by vertex where their number and no reference allows it
+  Origin origin;
+};
+
 struct PinSettings {
   Selection select;
   Track<Transform> keys;     ///< at least one key (none in the file: one that moves nothing)
   bool pivot_given = false;  ///< false: the centroid of the selected points is the pivot of every key
   bool keys_in_box = false;  ///< translate of the keys counts in heights, pivot in coordinates of the placed body's box
   std::vector<FrameRange> active;
+  std::optional<FollowSettings> follow;  ///< instead of keys
+  bool grab = false;                     ///< takes the points where they are when it starts
   Origin origin;
 };
 
 struct PullSettings {
-  Selection select;
+  Selection select;  ///< no term: with weights, the points of a weight above 0
   Track<Transform> keys;
   bool pivot_given = false;
   bool keys_in_box = false;  ///< translate of the keys counts in heights, pivot in coordinates of the placed body's box
@@ -115,6 +132,9 @@ struct PullSettings {
   double falloff = 0;        ///< m; weights fall smoothly to 0 at this distance from the selection's centre; 0: equal
   double max_force = 0;      ///< N; 0: no limit
   std::vector<FrameRange> active;
+  std::optional<FollowSettings> follow;  ///< instead of keys
+  bool grab = false;                     ///< takes the points where they are when it starts
+  std::optional<WeightSource> weights;   ///< factor on each point's share of the stiffness
   Origin origin;
 };
 

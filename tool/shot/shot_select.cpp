@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "tool/shot/shot_follow.h"
+
 namespace softreel {
 namespace {
 
@@ -13,9 +15,13 @@ struct TermText {
   std::optional<SelectNearest> nearest;
   std::optional<std::string> group;
   bool all = false;
+  std::optional<WeightSource> weights;
+  std::optional<double> threshold;
   SelectionUnit unit = SelectionUnit::Meter;
 };
 
+/// A threshold of 0 would take what is not painted.
+constexpr Range kThreshold{0, 1, true};
 constexpr const char* kSelectionUnit = "m or box";
 
 const Table<SelectBox>& box_table() {
@@ -71,7 +77,10 @@ const Table<SelectNearest>& nearest_table() {
 
 void check_term(const Place& place, const TomlValue& value, TermText& term) {
   const int shapes = int{term.box.has_value()} + int{term.sphere.has_value()} + int{term.plane.has_value()} +
-                     int{term.nearest.has_value()} + int{term.group.has_value()} + int{term.all};
+                     int{term.nearest.has_value()} + int{term.group.has_value()} + int{term.all} +
+                     int{term.weights.has_value()};
+  if (shapes == 1 && term.threshold && !term.weights)
+    throw value_error(place, value, "it has a threshold, but no weights", "Remove the threshold.");
   if (shapes == 1) return;
   throw value_error(place, value, shapes == 0 ? "it has no shape" : "it has several shapes",
                     "Give one shape; a list of selections is their union.");
@@ -87,6 +96,9 @@ const Table<TermText>& term_table() {
         .add_optional_table("nearest", &TermText::nearest, nearest_table())
         .add("group", &TermText::group, optional_of(text()), "", "Points of a named group or material of the mesh.")
         .add("all", &TermText::all, absent_if_zero(toggle()), "", "All points.", "false")
+        .add("weights", &TermText::weights, weights_codec(), "", "Points whose painted weight reaches the threshold.")
+        .add("threshold", &TermText::threshold, optional_of(number(kThreshold)), "", "Least weight that is taken.",
+             "0.5")
         .add("unit", &TermText::unit, choice<SelectionUnit>({{"m", SelectionUnit::Meter}, {"box", SelectionUnit::Box}}),
              "", "What the numbers count: metres in the scene, or 0 to 1 along each axis of the placed body's box.");
     t.check = check_term;
@@ -101,6 +113,8 @@ SelectionTerm to_term(const TermText& text) {
   if (text.plane) return {*text.plane, text.unit};
   if (text.nearest) return {*text.nearest, text.unit};
   if (text.group) return {SelectGroup{*text.group}, text.unit};
+  if (text.weights)
+    return {SelectWeights{*text.weights, text.threshold.value_or(SelectWeights{}.threshold)}, text.unit};
   return {SelectAll{}, text.unit};
 }
 
@@ -112,6 +126,10 @@ TomlValue print_term(const SelectionTerm& term) {
   if (const auto* plane = std::get_if<SelectPlane>(&term.shape)) text.plane = *plane;
   if (const auto* nearest = std::get_if<SelectNearest>(&term.shape)) text.nearest = *nearest;
   if (const auto* group = std::get_if<SelectGroup>(&term.shape)) text.group = group->name;
+  if (const auto* painted = std::get_if<SelectWeights>(&term.shape)) {
+    text.weights = painted->source;
+    text.threshold = painted->threshold;
+  }
   text.all = std::holds_alternative<SelectAll>(term.shape);
   return write_table(term_table(), text);
 }
@@ -205,7 +223,8 @@ std::optional<TomlValue> print_motion(const Motion& motion) {
 Codec<Selection> selection_codec() {
   Codec<Selection> codec;
   codec.type = "selection";
-  codec.accepted = "{ box | sphere | plane | nearest | group | all = ..., unit = ... } or a list of these, their union";
+  codec.accepted =
+      "{ box | sphere | plane | nearest | group | weights | all = ..., unit = ... } or a list of these, their union";
   codec.parts = table_texts(term_table(), ".");
   codec.parse = [](const Place& place, const TomlValue& value) {
     Selection selection;

@@ -1,9 +1,40 @@
 #include "tool/stages/body_frame_bytes.h"
 
+#include "core/base/check.h"
 #include "tool/stages/bytes.h"
 #include "tool/stages/stage_names.h"
 
 namespace softreel {
+namespace {
+
+/// The last of a frame, and nothing where nothing grabs: so are frames stored that are older than grabbing.
+void pack(const Grabs& grabs, ByteWriter& out) {
+  if (grabs.pins.empty() && grabs.pulls.empty()) return;
+  for (const std::vector<Grab>* list : {&grabs.pins, &grabs.pulls}) {
+    out.put(static_cast<std::uint64_t>(list->size()));
+    for (const Grab& grab : *list) {
+      out.put(grab.range);
+      out.put(grab.frame);
+      out.put_array(grab.positions);
+    }
+  }
+}
+
+Grabs unpack_grabs(ByteReader& in) {
+  Grabs grabs;
+  if (in.at_end()) return grabs;
+  for (std::vector<Grab>* list : {&grabs.pins, &grabs.pulls}) {
+    list->resize(in.get<std::uint64_t>());
+    for (Grab& grab : *list) {
+      grab.range = in.get<Index>();
+      grab.frame = in.get<double>();
+      grab.positions = in.get_array<Vec3>();
+    }
+  }
+  return grabs;
+}
+
+}  // namespace
 
 Bytes pack(const BodyFrame& frame) {
   ByteWriter out;
@@ -19,7 +50,10 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.troubles);
   out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
   for (const auto& step : frame.earlier_steps) out.put_array(step);
+  const bool grabs = !frame.state.grabs.pins.empty() || !frame.state.grabs.pulls.empty();
+  if (grabs) CHECK(frame.energy.has_value());  // what follows the energy is found by its place
   if (frame.energy) out.put(*frame.energy);
+  pack(frame.state.grabs, out);
   return out.take();
 }
 
@@ -39,6 +73,7 @@ BodyFrame unpack_body_frame(std::span<const std::uint8_t> bytes) {
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
   if (!in.at_end()) frame.energy = in.get<FrameEnergy>();
+  frame.state.grabs = unpack_grabs(in);
   return frame;
 }
 

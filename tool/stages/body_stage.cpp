@@ -9,7 +9,6 @@
 #include "core/tetmesh/filling/tetrahedralize.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
 #include "core/tetmesh/triangle_tree.h"
-#include "tool/stages/at_field.h"
 #include "tool/stages/bytes.h"
 #include "tool/stages/stage_names.h"
 
@@ -153,91 +152,6 @@ FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const S
 
 namespace {
 
-/// Keys in box units to metres: translations in heights of the box, pivots in its coordinates.
-Track<Transform> keys_in_meters(Track<Transform> track, bool in_box, bool pivot_given, const Bounds& box,
-                                const Vec3& centroid) {
-  for (Key<Transform>& key : track.keys) {
-    if (in_box) {
-      key.value.translate *= box.size().y();
-      key.value.pivot = box.min + key.value.pivot.cwiseProduct(box.size());
-    }
-    if (!pivot_given) key.value.pivot = centroid;
-  }
-  return track;
-}
-
-std::vector<Index> select_or_fail(const Selection& selection, const SurfaceMesh& surface, const Origin& origin,
-                                  const std::string& field) {
-  std::vector<Index> points = at_field(origin, field + ".select", [&] { return select_points(selection, surface); });
-  if (!points.empty()) return points;
-  const Bounds box = used_bounds(surface);
-  throw input_error(fmt::format(
-      "{}: {}.select takes no point of the surface.\n  The body reaches from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, "
-      "{:.4g}, {:.4g}) m. Accepted: a selection that takes at least one vertex; enlarge it, or use unit = \"box\".",
-      to_string(origin), field, box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()));
-}
-
-Vec3 centroid_of(const std::vector<Index>& points, const SurfaceMesh& surface) {
-  Vec3 sum = Vec3::Zero();
-  for (const Index p : points) sum += surface.positions[static_cast<std::size_t>(p)];
-  return sum / static_cast<double>(points.size());
-}
-
-/// Weights that fall smoothly to zero at `falloff` from the centre of the selection, or equal ones; sum 1.
-std::vector<double> pull_weights(const std::vector<Index>& points, const SurfaceMesh& surface, double falloff,
-                                 const Vec3& center) {
-  std::vector<double> weights(points.size(), 1.0);
-  double sum = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (falloff > 0) {
-      const double distance = (surface.positions[static_cast<std::size_t>(points[i])] - center).norm();
-      weights[i] = distance < falloff ? 1 - eased(Ease::Smooth, distance / falloff) : 0;
-    }
-    sum += weights[i];
-  }
-  if (sum > 0)
-    for (double& weight : weights) weight /= sum;
-  return sum > 0 ? weights : std::vector<double>{};
-}
-
-}  // namespace
-
-BodyConstraints resolve_constraints(const BodySettings& body, const SurfaceMesh& surface) {
-  BodyConstraints resolved;
-  const Bounds box = used_bounds(surface);
-  for (std::size_t i = 0; i < body.pins.size(); ++i) {
-    const PinSettings& settings = body.pins[i];
-    const std::string field = fmt::format("body.{}.pin[{}]", body.name, i);
-    Pin pin{fmt::format("{} ({})", field, to_string(settings.origin)), {}, {}, settings.active};
-    pin.points = select_or_fail(settings.select, surface, settings.origin, field);
-    pin.track = keys_in_meters(settings.keys, settings.keys_in_box, settings.pivot_given, box,
-                               centroid_of(pin.points, surface));
-    resolved.pins.push_back(std::move(pin));
-  }
-  for (std::size_t i = 0; i < body.pulls.size(); ++i) {
-    const PullSettings& settings = body.pulls[i];
-    const std::string field = fmt::format("body.{}.pull[{}]", body.name, i);
-    Pull pull;
-    pull.name = fmt::format("{} ({})", field, to_string(settings.origin));
-    pull.points = select_or_fail(settings.select, surface, settings.origin, field);
-    const Vec3 center = centroid_of(pull.points, surface);
-    pull.weights = pull_weights(pull.points, surface, settings.falloff, center);
-    if (pull.weights.empty())
-      throw input_error(
-          fmt::format("{}: {}.falloff = {} m reaches no selected point.\n  Accepted: more than the "
-                      "distance from the selection's centre to its nearest point. Enlarge it.",
-                      to_string(settings.origin), field, settings.falloff));
-    pull.track = keys_in_meters(settings.keys, settings.keys_in_box, settings.pivot_given, box, center);
-    pull.stiffness = settings.stiffness;
-    pull.max_force = settings.max_force;
-    pull.active = settings.active;
-    resolved.pulls.push_back(std::move(pull));
-  }
-  return resolved;
-}
-
-namespace {
-
 std::string region_field(const BodySettings& body, std::size_t index) {
   return fmt::format("body.{}.region[{}]", body.name, index);
 }
@@ -256,14 +170,14 @@ void add(KeyHasher& key, const SelectionTerm& term) {
 
 }  // namespace
 
-void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, const SurfaceMesh& surface) {
+void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, const LoadedBody& loaded) {
   add(key, find_material(shot, body.material).physics);
   for (std::size_t i = 0; i < body.regions.size(); ++i) {
     const RegionSettings& region = body.regions[i];
-    select_or_fail(region.select, surface, region.origin, region_field(body, i));
+    select_or_fail(region.select, loaded, region.origin, region_field(body, i));
     for (const SelectionTerm& term : region.select.terms) {
       add(key, term);
-      key.add(select_points({{term}}, surface));
+      key.add(select_points({{term}}, loaded.surface, loaded.weight_maps));
     }
     key.add(region.material.has_value()).add(region.stiffness.value_or(0.0));
     if (region.material) add(key, find_material(shot, *region.material).physics);
@@ -276,7 +190,7 @@ std::vector<ElementMaterial> element_materials(const Shot& shot, const BodySetti
   std::vector<ElementMaterial> materials(mesh.tets.size(), base);
   const std::vector<Vec3> centroids = element_centroids(mesh);
   for (const RegionSettings& region : body.regions) {
-    const std::vector<bool> inside = contains(region.select, loaded.surface, centroids);
+    const std::vector<bool> inside = contains(region.select, loaded.surface, centroids, loaded.weight_maps);
     for (std::size_t e = 0; e < inside.size(); ++e) {
       if (!inside[e]) continue;
       if (region.material) materials[e] = find_material(shot, *region.material).physics;

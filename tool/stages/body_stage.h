@@ -6,21 +6,12 @@
 
 #include "core/dynamics/simulator.h"
 #include "tool/shot/shot.h"
+#include "tool/stages/constraint_stage.h"
 #include "tool/stages/key.h"
 #include "tool/stages/loaded_body.h"
 #include "tool/stages/run_context.h"
 
 namespace softreel {
-
-/// Pins and pulls on points of the surface.
-struct BodyConstraints {
-  std::vector<Pin> pins;
-  std::vector<Pull> pulls;
-};
-
-/// Selections and keys of a body's pins and pulls, in metres. Throws input_error with the field's place for a selection
-/// that takes nothing and for groups that do not exist.
-BodyConstraints resolve_constraints(const BodySettings& body, const SurfaceMesh& surface);
 
 /// The tetrahedra of a body with its surface embedded in them.
 struct FilledBody {
@@ -43,7 +34,7 @@ FilledBody fill_body_anew(const BodySettings& body, const LoadedBody& loaded, co
 
 /// Adds what shapes the materials of a body's elements: its own, and its regions. Throws input_error as
 /// resolve_constraints, for regions.
-void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, const SurfaceMesh& surface);
+void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, const LoadedBody& loaded);
 
 /// Materials per element: the body's own, and those of its regions.
 std::vector<ElementMaterial> element_materials(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,

@@ -45,6 +45,7 @@ class ByteReader {
     get_raw(&value, sizeof(T));
     return value;
   }
+  bool at_end() const { return bytes_.empty(); }
   template <typename T>
   std::vector<T> get_array() {
     const auto size = get<std::uint64_t>();

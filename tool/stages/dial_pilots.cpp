@@ -96,7 +96,10 @@ std::vector<Vec3> DialPilots::points_of(const Simulator& simulator, const Filled
 SampledMotion DialPilots::move(Simulator& simulator, const FilledBody& filled) const {
   simulator.set_state(rest_of(filled.mesh));
   const int start = first_simulated_frame(shot_);
-  if (shot_.settings.start == StartState::Equilibrium) require(simulator.find_equilibrium(start), start);
+  if (shot_.settings.start == StartState::Equilibrium)
+    require(simulator.find_equilibrium(start), start);
+  else
+    simulator.start_grabs(start);
   SampledMotion motion;
   for (int frame = start; frame <= shot_.settings.last_frame; ++frame) {
     if (frame > start) {

@@ -98,7 +98,7 @@ StageKey dial_key(const Shot& shot, const BodySettings& body, const LoadedBody& 
                   const BodyConstraints& constraints) {
   if (!shot.dial.is_on()) return {};
   KeyHasher materials("materials");
-  add_materials(materials, shot, body, loaded.surface);
+  add_materials(materials, shot, body, loaded);
   Shot looked_at = shot;
   looked_at.solver.substeps = kLooksPerFrame;
   return KeyHasher(kDialVersion)

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "core/constraints/pulls.h"
+#include "core/constraints/targets.h"
 #include "tool/stages/simulate_key.h"
 
 namespace softreel {
@@ -43,11 +45,14 @@ std::vector<Index> thinned(const std::vector<Index>& selected, const SurfaceMesh
 }
 
 void add_pull(GizmoMarks& marks, const Pull& pull, const std::vector<Index>& dots, const Points& rest,
-              const Points& points, double frame) {
-  if (!is_active(pull.active, frame) || !(pull.stiffness.at(frame) > 0)) return;
+              const Points& points, double frame, const Grab& grab) {
+  if (pulling_range(pull, frame) < 0) return;
   add_dots(marks, points, dots, kPullColor);
-  const Transform transform = pull.track.at(frame);
-  const auto target = [&](Index p) { return transform.apply(rest[static_cast<std::size_t>(p)]); };
+  const std::vector<Vec3> targets = pull_targets(pull, rest, frame, grab);
+  const auto target = [&](Index p) {
+    const auto place = std::lower_bound(pull.points.begin(), pull.points.end(), p) - pull.points.begin();
+    return targets[static_cast<std::size_t>(place)];
+  };
   // Evenly spread over the points in the order of the file, ends included.
   const std::size_t lines = std::min(kLines, dots.size());
   for (std::size_t k = 0; k < lines; ++k) {
@@ -59,10 +64,10 @@ void add_pull(GizmoMarks& marks, const Pull& pull, const std::vector<Index>& dot
   marks.dots.push_back({middle.cast<float>(), kPullColor, kTargetDiameter});
 }
 
-std::vector<Index> points_of_regions(const BodySettings& body, const SurfaceMesh& surface) {
+std::vector<Index> points_of_regions(const BodySettings& body, const LoadedBody& loaded) {
   std::vector<Index> points;
   for (const RegionSettings& region : body.regions) {
-    const std::vector<Index> selected = select_points(region.select, surface);
+    const std::vector<Index> selected = select_points(region.select, loaded.surface, loaded.weight_maps);
     points.insert(points.end(), selected.begin(), selected.end());
   }
   std::sort(points.begin(), points.end());
@@ -75,10 +80,10 @@ std::vector<Index> points_of_regions(const BodySettings& body, const SurfaceMesh
 Gizmos::Gizmos(const ShotRun& run, const GizmoKinds& kinds) : run_(run), kinds_(kinds) {
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const SurfaceMesh& surface = run.loaded(b).surface;
-    BodyMarks body{resolve_constraints(run.settings(b), surface), {}, {}, {}};
+    BodyMarks body{resolve_constraints(run.shot(), run.settings(b), run.loaded(b), Log{}), {}, {}, {}};
     for (const Pin& pin : body.constraints.pins) body.pin_dots.push_back(thinned(pin.points, surface));
     for (const Pull& pull : body.constraints.pulls) body.pull_dots.push_back(thinned(pull.points, surface));
-    body.region_dots = thinned(points_of_regions(run.settings(b), surface), surface);
+    body.region_dots = thinned(points_of_regions(run.settings(b), run.loaded(b)), surface);
     bodies_.push_back(std::move(body));
   }
 }
@@ -88,12 +93,15 @@ GizmoMarks Gizmos::at(int frame, const std::vector<SkinnedBody>& bodies) const {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Points& points = bodies[b].times.back().positions;
     const BodyMarks& body = bodies_[b];
-    const auto& [pins, pulls] = body.constraints;
+    const std::vector<Pin>& pins = body.constraints.pins;
+    const std::vector<Pull>& pulls = body.constraints.pulls;
+    const Grab nothing;
     if (kinds_.regions) add_dots(marks, points, body.region_dots, kRegionColor);
     for (std::size_t k = 0; kinds_.pins && k < pins.size(); ++k)
       if (is_active(pins[k].active, frame)) add_dots(marks, points, body.pin_dots[k], kPinColor);
     for (std::size_t k = 0; kinds_.pulls && k < pulls.size(); ++k)
-      add_pull(marks, pulls[k], body.pull_dots[k], run_.loaded(b).surface.positions, points, frame);
+      add_pull(marks, pulls[k], body.pull_dots[k], run_.loaded(b).surface.positions, points, frame,
+               k < bodies[b].pull_grabs.size() ? bodies[b].pull_grabs[k] : nothing);
   }
   return marks;
 }

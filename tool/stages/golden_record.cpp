@@ -15,6 +15,7 @@
 #include "tool/stages/base64.h"
 #include "tool/stages/json_text.h"
 #include "tool/stages/settings_snapshot.h"
+#include "tool/stages/weight_maps.h"
 
 namespace softreel {
 namespace {
@@ -36,6 +37,8 @@ Shot without_places(Shot shot) {
   keep_name(shot.environment_image);
   for (auto& [name, material] : shot.materials)
     for (std::string* path : material.textures.paths()) keep_name(*path);
+  for (BodySettings& body : shot.bodies)
+    for (std::string* path : constraint_files(body)) keep_name(*path);
   const OutputSettings output = shot.output;
   shot.output = {};
   shot.output.view = output.view;

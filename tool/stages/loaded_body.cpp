@@ -12,6 +12,7 @@
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
 #include "tool/stages/at_field.h"
+#include "tool/stages/weight_maps.h"
 
 namespace softreel {
 namespace {
@@ -82,6 +83,7 @@ LoadedBody load_body(const BodySettings& body, const RunContext& context) {
   if (!body.tetrahedra.empty())
     loaded.given = at_field(body.origin, fmt::format("body.{}.tetrahedra", body.name),
                             [&] { return read_tet_mesh(body.tetrahedra, context.log); });
+  loaded.weight_maps = read_weight_maps(body, loaded.file_mesh);
   loaded.file_key = mesh_key(loaded.file_mesh);
   loaded.surface = loaded.file_mesh;
   apply(loaded.placement, loaded.surface);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/constraints/selection.h"
 #include "core/mesh/placement.h"
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/tet_mesh.h"
@@ -19,11 +20,12 @@ struct LoadedBody {
   SurfaceMesh file_mesh;  ///< repaired triangles, positions in file units
   SurfaceMesh surface;    ///< the same, placed (m)
   Placement placement;
-  std::optional<TetMesh> given;    ///< tetrahedra made elsewhere, placed (m)
-  std::vector<std::string> facts;  ///< what check and repair found, one line each
-  StageKey key;                    ///< of surface.positions and surface.triangles
-  StageKey file_key;               ///< of all that the mesh file says, before placement
-  StageKey given_key;              ///< of the given tetrahedra as their file has them; empty if there are none
+  std::optional<TetMesh> given;        ///< tetrahedra made elsewhere, placed (m)
+  std::vector<WeightMap> weight_maps;  ///< that its constraints and regions name
+  std::vector<std::string> facts;      ///< what check and repair found, one line each
+  StageKey key;                        ///< of surface.positions and surface.triangles
+  StageKey file_key;                   ///< of all that the mesh file says, before placement
+  StageKey given_key;                  ///< of the given tetrahedra as their file has them; empty if there are none
 };
 
 /// Reads, checks, repairs and places the mesh of a body. Throws input_error.

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "tool/shot/shot_load.h"
 #include "tool/stages/atomic_file.h"
+#include "tool/stages/weight_maps.h"
 
 namespace softreel {
 namespace {
@@ -113,6 +114,10 @@ SettingsSnapshot snapshot(const ShotRun& run) {
     BodySettings& body = with_paths.bodies[b];
     body.mesh = absolute(body.mesh);
     snapshot[std::string(kMeshPrefix) + body.mesh] = run.loaded(b).file_key;
+    for (std::string* path : constraint_files(body)) {
+      *path = absolute(*path);
+      snapshot[std::string(kMeshPrefix) + *path] = checksum_of(*path);
+    }
     if (body.tetrahedra.empty()) continue;
     body.tetrahedra = absolute(body.tetrahedra);
     snapshot[std::string(kMeshPrefix) + body.tetrahedra] = run.loaded(b).given_key;

@@ -31,7 +31,7 @@ ShotRun::ShotRun(const Shot& shot, const RunContext& context, DialUse dial) : sh
   // Selections that take nothing are said before the long work starts.
   std::vector<BodyConstraints> constraints;
   for (std::size_t b = 0; b < shot.bodies.size(); ++b)
-    constraints.push_back(resolve_constraints(shot.bodies[b], bodies_[b]->loaded.surface));
+    constraints.push_back(resolve_constraints(shot, shot.bodies[b], bodies_[b]->loaded, context.log));
   for (std::size_t b = 0; b < shot.bodies.size(); ++b) resolve(b, std::move(constraints[b]), dial);
 }
 
@@ -195,6 +195,7 @@ SkinnedBody ShotRun::skin_body(std::size_t index, int frame, const SkinRequest& 
   Body& body = *bodies_[index];
   const std::vector<Vec3> previous = previous_nodes(body, frame, request);
   SkinnedBody skinned;
+  skinned.pull_grabs = body.simulation->at(frame).state.grabs.pulls;
   skin_times(body, frame, request, previous, [&](SkinnedBody::Time at) { skinned.times.push_back(std::move(at)); });
   if (request.next) skinned.next_positions = next_positions(body, frame, skinned.times.back().positions, previous);
   return skinned;

@@ -27,6 +27,7 @@ struct SkinnedBody {
   std::vector<Vec3> next_positions;  ///< at the next frame, if asked for
   std::vector<double> heat;          ///< per vertex, the quantity asked for, at the frame itself
   std::vector<double> strain;        ///< per vertex, at the frame itself, if asked for
+  std::vector<Grab> pull_grabs;      ///< what pulls hold at the frame, per pull; empty where nothing grabs
 };
 
 /// What is wanted of each frame.

@@ -1,5 +1,7 @@
 #include "tool/stages/simulate_key.h"
 
+#include <algorithm>
+
 #include "core/dynamics/frame_steps.h"
 
 namespace softreel {
@@ -14,18 +16,37 @@ void add(KeyHasher& key, const Transform& t) {
   if (!t.rotate.isZero(0) || t.scale != Vec3::Ones()) key.add(t.pivot);
 }
 
+/// Where an active pin or pull takes its points. One that grabs starts anew in another range.
+template <typename Constraint>
+void add_motion(KeyHasher& key, const Constraint& constraint, double frame) {
+  if (constraint.follow != nullptr)
+    key.add(constraint.follow->pose(frame));
+  else
+    add(key, constraint.track.at(frame));
+  if (constraint.grab) key.add(active_range(constraint.active, frame));
+}
+
 /// An inactive constraint has no value: its keys may change freely.
 void add_constraints(KeyHasher& key, const BodyConstraints& constraints, double frame) {
   for (const Pin& pin : constraints.pins) {
     const bool active = is_active(pin.active, frame);
     key.add(active);
-    if (active) add(key, pin.track.at(frame));
+    if (active) add_motion(key, pin, frame);
   }
   for (const Pull& pull : constraints.pulls) {
     const double stiffness = is_active(pull.active, frame) ? pull.stiffness.at(frame) : 0.0;
     key.add(stiffness);
-    if (stiffness > 0) add(key, pull.track.at(frame));
+    if (stiffness > 0) add_motion(key, pull, frame);
   }
+}
+
+/// What is followed and whether it is grabbed, at all frames; nothing where neither is, as in shots without them.
+template <typename Constraint>
+void add_guide(KeyHasher& key, const Constraint& constraint) {
+  if (constraint.grab) key.add("grab");
+  if (constraint.follow == nullptr) return;
+  key.add("follow").add(constraint.follow->content());
+  for (const FollowTie& tie : constraint.ties) key.add(tie.vertices).add(tie.weights);
 }
 
 /// What the steps of a dynamic shot depend on; "auto" is the key of what it stands for.
@@ -38,6 +59,12 @@ void add_steps(KeyHasher& key, const SolverParams& solver) {
 }
 
 }  // namespace
+
+bool has_grabs(const BodyConstraints& constraints) {
+  const auto grabs = [](const auto& constraint) { return constraint.grab; };
+  return std::any_of(constraints.pins.begin(), constraints.pins.end(), grabs) ||
+         std::any_of(constraints.pulls.begin(), constraints.pulls.end(), grabs);
+}
 
 StageKey simulation_base_key(const Shot& shot, const SolverParams& solver, const BodyConstraints& constraints,
                              const StageKey& filled, const StageKey& materials) {
@@ -57,8 +84,14 @@ StageKey simulation_base_key(const Shot& shot, const SolverParams& solver, const
   const MultigridParams& multigrid = solver.multigrid;
   key.add(multigrid.galerkin).add(multigrid.method).add(multigrid.coarse_cycle).add(multigrid.smoother);
   key.add(multigrid.sweeps).add(multigrid.chebyshev_degree);
-  for (const Pin& pin : constraints.pins) key.add(pin.points);
-  for (const Pull& pull : constraints.pulls) key.add(pull.points).add(pull.weights).add(pull.max_force);
+  for (const Pin& pin : constraints.pins) {
+    key.add(pin.points);
+    add_guide(key, pin);
+  }
+  for (const Pull& pull : constraints.pulls) {
+    key.add(pull.points).add(pull.weights).add(pull.max_force);
+    add_guide(key, pull);
+  }
   return key.key();
 }
 
@@ -66,8 +99,10 @@ StageKey frame_key(const Shot& shot, const BodyConstraints& constraints, const S
                    bool is_start) {
   KeyHasher key("frame");
   key.add(previous);
-  if (is_start && shot.settings.mode == SimulationMode::Dynamic && shot.settings.start == StartState::Rest)
+  if (is_start && shot.settings.mode == SimulationMode::Dynamic && shot.settings.start == StartState::Rest) {
+    if (has_grabs(constraints)) add_constraints(key, constraints, frame);
     return key.key();
+  }
   if (is_start || shot.settings.mode == SimulationMode::Static) {
     add_constraints(key, constraints, frame);
     return key.key();

@@ -23,6 +23,9 @@ StageKey frame_key(const Shot& shot, const BodyConstraints& constraints, const S
 /// Of all that pins and pulls say at a frame: equal keys ask for the same.
 StageKey constraints_key(const BodyConstraints& constraints, double frame);
 
+/// True if a pin or pull takes points where they are, so that the state of a frame holds what was taken.
+bool has_grabs(const BodyConstraints& constraints);
+
 /// Where the simulation starts: the first frame less the preroll.
 int first_simulated_frame(const Shot& shot);
 

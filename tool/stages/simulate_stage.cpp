@@ -15,7 +15,7 @@ namespace {
 
 StageKey materials_key(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded) {
   KeyHasher key("materials");
-  add_materials(key, shot, settings, loaded.surface);
+  add_materials(key, shot, settings, loaded);
   return key.key();
 }
 
@@ -220,6 +220,10 @@ BodyFrame BodySimulation::simulated(int frame) {
   }
   const bool is_start = frame == first_simulated_frame(shot_);
   if (is_start && !is_static && settings.start == StartState::Rest) {
+    if (has_grabs(constraints_)) {
+      simulator().start_grabs(frame);
+      frame_.state = simulator_->state();
+    }
     result.state = frame_.state;
     result.energy = FrameEnergy();
     return result;

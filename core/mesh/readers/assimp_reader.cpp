@@ -1,4 +1,4 @@
-/// The only place that knows assimp.
+/// Surface meshes out of assimp; with assimp_scene_reader.cpp the only place that knows it.
 #include "core/mesh/readers/assimp_reader.h"
 
 #include <algorithm>

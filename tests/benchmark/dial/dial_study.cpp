@@ -35,7 +35,7 @@ class OneBody {
       : shot_(load_shot(path, {{"solver.error", "1%"}})),
         context_{threads_, log_, times_, cache_, cancelled_},
         loaded_(load_body(shot_.bodies.front(), context_)),
-        constraints_(resolve_constraints(shot_.bodies.front(), loaded_.surface)),
+        constraints_(resolve_constraints(shot_, shot_.bodies.front(), loaded_, log_)),
         pilots_(shot_, shot_.bodies.front(), loaded_, constraints_, context_) {}
 
   bool is_dynamic() const { return !is_static(shot_); }

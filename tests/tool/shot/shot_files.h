@@ -116,6 +116,7 @@ select = [
   { nearest = { point = [0.5, 1, 0.5], count = 3 }, unit = "box" },
   { group = "knees" },
   { all = true },
+  { weights = { file = "map.ply", attribute = "goal" }, threshold = 0.25 },
 ]
 active = [[1, 20], [30.5, 40]]
 keys_unit = "box"
@@ -126,6 +127,15 @@ keys = [
 
 [[body.second_by_name.pin]]
 select = { plane = { point = [0, 0, 0.1], normal = [0, 1, 0] } }
+
+[[body.second_by_name.pin]]
+select = { weights = { color = "green" }, threshold = 0.25 }
+follow = { file = "rig.glb", node = "jaw", clip = "open", start = 3, speed = 0.5, reference = 2, placement = "scene" }
+grab = true
+
+[[body.second_by_name.pin]]
+select = { weights = { file = "map.ply", attribute = "goal" } }
+follow = { file = "rig.glb", mesh = "skin", bind = "vertex" }
 
 [[body.second_by_name.pull]]
 select = [
@@ -145,6 +155,23 @@ keys = [
   { frame = 1, ease = "linear" },
   { frame = 40, translate = [0.2, 0.5, 0], rotate_deg = [1, 2, 3], scale = [2, 1, 1], pivot = [1, 1, 1] },
 ]
+
+[[body.second_by_name.pull]]
+select = { weights = { file = "map.ply", attribute = "goal" }, threshold = 0.75 }
+stiffness = 3
+weights = { attribute = "softness", file = "b.ply" }
+follow = { file = "cache.mdd", node = "none", clip = "c", start = 1.5, speed = 2, reference = 4, placement = "scene" }
+grab = true
+
+[[body.second_by_name.pull]]
+select = { weights = { color = "blue" }, threshold = 0.1 }
+stiffness = 4
+weights = { color = "red" }
+follow = { file = "rig.fbx", mesh = "skin", bind = "nearest" }
+
+[[body.second_by_name.region]]
+select = [{ weights = { file = "map.txt", attribute = "goal" }, threshold = 0.1 }, { weights = { color = "red" } }]
+stiffness = 2
 
 [body.first_by_name]
 mesh = "/meshes/a.ply"

@@ -1,6 +1,7 @@
 /// Which edits change which keys: the promises of design sec. 1.
 #include "tool/stages/simulate_key.h"
 
+#include <algorithm>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -110,9 +111,9 @@ TEST(FrameKey, IndependentFramesKnowNothingOfEachOther) {
 }
 
 TEST(FrameKey, MaterialsOfRegionsCountWhereverTheirNumbersChange) {
-  SurfaceMesh surface;
-  surface.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
-  surface.triangles = {{0, 1, 2}};
+  LoadedBody loaded;
+  loaded.surface.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  loaded.surface.triangles = {{0, 1, 2}};
   Shot shot;
   shot.materials["flesh"];
   BodySettings body;
@@ -122,7 +123,7 @@ TEST(FrameKey, MaterialsOfRegionsCountWhereverTheirNumbersChange) {
   body.regions[0].stiffness = 4.0;
   const auto key = [&] {
     KeyHasher hasher("materials");
-    add_materials(hasher, shot, body, surface);
+    add_materials(hasher, shot, body, loaded);
     return hasher.key();
   };
   const StageKey before = key();
@@ -164,6 +165,52 @@ TEST(FrameKey, PhysicsChangesEveryFrame) {
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.solver.rotation = RotationMethod::Energy; }), 1);
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.gravity.y() = -1.62; }), 1);
   EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].points = {0, 1}; }), 1);
+}
+
+/// Moves by a given distance a frame until frame 30.
+class Drift : public FollowedMotion {
+ public:
+  explicit Drift(double pace) : pace_(pace) {}
+  std::vector<FollowTie> tie(std::span<const Vec3>, std::span<const Index>) const override { return {}; }
+  std::vector<LocalMotion> motions(std::span<const FollowTie>, double frame) const override {
+    return {{Mat3::Identity(), Vec3::Zero(), Vec3(0, pace_ * std::min(frame, 30.0), 0)}};
+  }
+  std::vector<double> pose(double frame) const override { return {motions({}, frame)[0].to.y()}; }
+  std::uint64_t content() const override { return 0; }
+
+ private:
+  double pace_;
+};
+
+TEST(FrameKey, OfAGrabTellsRangesApart) {
+  Shot shot = simple_shot();
+  BodyConstraints one = simple_constraints();
+  one.pins[0].active = {{1, 60}};
+  one.pins[0].grab = true;
+  BodyConstraints two = simple_constraints();
+  two.pins[0].active = {{1, 20}, {20.5, 60}};  // at all whole frames, so without grab the same
+  two.pins[0].grab = true;
+  const auto keys = [&](const BodyConstraints& constraints) {
+    return simulation_keys(shot, shot.solver, constraints, "filled", "materials");
+  };
+  EXPECT_EQ(keys(one)[19], keys(two)[19]);
+  EXPECT_NE(keys(one)[20], keys(two)[20]);
+  EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].grab = true; }), 1);
+}
+
+TEST(FrameKey, OfWhatIsFollowedIsThatOfItsPose) {
+  Shot shot = simple_shot();
+  const Drift slow(1), quick(2), none(0);
+  const auto keys = [&](const FollowedMotion& motion) {
+    BodyConstraints constraints = simple_constraints();
+    constraints.pins[0].follow = &motion;
+    constraints.pins[0].active = {{10, 60}};
+    return simulation_keys(shot, shot.solver, constraints, "filled", "materials");
+  };
+  EXPECT_EQ(keys(slow)[8], keys(quick)[8]) << "frame 9: not active yet";
+  EXPECT_NE(keys(slow)[9], keys(quick)[9]);
+  EXPECT_EQ(keys(slow), keys(Drift(1)));
+  EXPECT_NE(keys(none).back(), keys(slow).back());
 }
 
 }  // namespace

@@ -1,0 +1,154 @@
+#include "core/mesh/scene_animation.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/base/fingerprint.h"
+
+namespace softreel {
+namespace {
+
+Vec3 blend(const Vec3& a, const Vec3& b, double share) {
+  return a + share * (b - a);
+}
+
+Quaternion blend(const Quaternion& a, const Quaternion& b, double share) {
+  return a.slerp(share, b);
+}
+
+std::vector<double> blend(std::vector<double> a, const std::vector<double>& b, double share) {
+  for (std::size_t k = 0; k < a.size(); ++k) a[k] += share * (b[k] - a[k]);
+  return a;
+}
+
+template <typename T>
+T value_at(const Samples<T>& samples, double seconds) {
+  const auto next = std::upper_bound(samples.seconds.begin(), samples.seconds.end(), seconds);
+  if (next == samples.seconds.begin()) return samples.values.front();
+  if (next == samples.seconds.end()) return samples.values.back();
+  const auto b = static_cast<std::size_t>(next - samples.seconds.begin());
+  const double share = (seconds - samples.seconds[b - 1]) / (*next - samples.seconds[b - 1]);
+  return share == 0 ? samples.values[b - 1] : blend(samples.values[b - 1], samples.values[b], share);
+}
+
+Affine local_at(const NodeChannel& channel, double seconds) {
+  Affine local;
+  if (!channel.rotation.empty()) local.linear = value_at(channel.rotation, seconds).normalized().toRotationMatrix();
+  if (!channel.scale.empty()) local.linear = (local.linear * value_at(channel.scale, seconds).asDiagonal()).eval();
+  if (!channel.translation.empty()) local.offset = value_at(channel.translation, seconds);
+  return local;
+}
+
+std::vector<Affine> joint_maps(const SceneMesh& mesh, const ScenePose& pose) {
+  std::vector<Affine> maps;
+  for (const SkinJoint& joint : mesh.joints)
+    maps.push_back(pose.nodes[static_cast<std::size_t>(joint.node)] * joint.from_bind);
+  return maps;
+}
+
+Vec3 posed_vertex(const SceneMesh& mesh, const Affine& node, const std::vector<Affine>& joints,
+                  const std::vector<double>& morph_weights, std::size_t v) {
+  Vec3 p = mesh.positions[v];
+  for (std::size_t t = 0; t < morph_weights.size(); ++t)
+    if (morph_weights[t] != 0) p += morph_weights[t] * mesh.morphs[t][v];
+  const bool is_skinned = !joints.empty() && mesh.influence_offsets[v] < mesh.influence_offsets[v + 1];
+  if (!is_skinned) return node(p);
+  Vec3 sum = Vec3::Zero();
+  for (Index k = mesh.influence_offsets[v]; k < mesh.influence_offsets[v + 1]; ++k) {
+    const SkinInfluence& influence = mesh.influences[static_cast<std::size_t>(k)];
+    sum += influence.weight * joints[static_cast<std::size_t>(influence.joint)](p);
+  }
+  return sum;
+}
+
+void add(std::vector<double>& numbers, const Affine& map) {
+  for (int k = 0; k < 9; ++k) numbers.push_back(map.linear(k / 3, k % 3));
+  for (int k = 0; k < 3; ++k) numbers.push_back(map.offset[k]);
+}
+
+}  // namespace
+
+ScenePose pose_scene(const SceneAnimation& scene, const SceneClip* clip, double seconds) {
+  ScenePose pose;
+  for (const SceneNode& node : scene.nodes) pose.nodes.push_back(node.rest);
+  for (const SceneMesh& mesh : scene.meshes) pose.morph_weights.push_back(mesh.morph_weights);
+  if (clip != nullptr) {
+    for (const NodeChannel& channel : clip->nodes)
+      pose.nodes[static_cast<std::size_t>(channel.node)] = local_at(channel, seconds);
+    for (const MorphChannel& channel : clip->morphs)
+      pose.morph_weights[static_cast<std::size_t>(channel.mesh)] = value_at(channel.weights, seconds);
+  }
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+    if (scene.nodes[n].parent >= 0)
+      pose.nodes[n] = pose.nodes[static_cast<std::size_t>(scene.nodes[n].parent)] * pose.nodes[n];
+  return pose;
+}
+
+SceneVertices::SceneVertices(const SceneAnimation& scene, const SceneClip* clip, std::vector<Index> meshes)
+    : scene_(scene), clip_(clip), meshes_(std::move(meshes)), first_{0} {
+  for (const Index m : meshes_)
+    first_.push_back(first_.back() + static_cast<Index>(scene.meshes[static_cast<std::size_t>(m)].positions.size()));
+}
+
+std::vector<Vec3> SceneVertices::posed(const ScenePose& pose, std::span<const Index> vertices) const {
+  std::vector<std::vector<Affine>> joints;
+  for (const Index m : meshes_) joints.push_back(joint_maps(scene_.meshes[static_cast<std::size_t>(m)], pose));
+  std::vector<Vec3> positions;
+  positions.reserve(vertices.size());
+  for (const Index v : vertices) {
+    const auto k = static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), v) - first_.begin() - 1);
+    const auto m = static_cast<std::size_t>(meshes_[k]);
+    const SceneMesh& mesh = scene_.meshes[m];
+    positions.push_back(posed_vertex(mesh, pose.nodes[static_cast<std::size_t>(mesh.node)], joints[k],
+                                     pose.morph_weights[m], static_cast<std::size_t>(v - first_[k])));
+  }
+  return positions;
+}
+
+std::vector<Vec3> SceneVertices::at(double seconds, std::span<const Index> vertices) const {
+  return posed(pose_scene(scene_, clip_, seconds), vertices);
+}
+
+std::vector<Vec3> SceneVertices::rest() const {
+  std::vector<Index> all(static_cast<std::size_t>(count()));
+  std::iota(all.begin(), all.end(), Index{0});
+  return posed(pose_scene(scene_, nullptr, 0), all);
+}
+
+std::vector<double> SceneVertices::pose(double seconds) const {
+  const ScenePose pose = pose_scene(scene_, clip_, seconds);
+  std::vector<double> numbers;
+  for (const Index m : meshes_) {
+    const SceneMesh& mesh = scene_.meshes[static_cast<std::size_t>(m)];
+    add(numbers, pose.nodes[static_cast<std::size_t>(mesh.node)]);
+    for (const SkinJoint& joint : mesh.joints) add(numbers, pose.nodes[static_cast<std::size_t>(joint.node)]);
+    const std::vector<double>& weights = pose.morph_weights[static_cast<std::size_t>(m)];
+    numbers.insert(numbers.end(), weights.begin(), weights.end());
+  }
+  return numbers;
+}
+
+std::uint64_t SceneVertices::content() const {
+  Fingerprint print;
+  for (const Index m : meshes_) {
+    const SceneMesh& mesh = scene_.meshes[static_cast<std::size_t>(m)];
+    print.add(std::span<const Vec3>(mesh.positions));
+    for (const auto& morph : mesh.morphs) print.add(std::span<const Vec3>(morph));
+    for (const SkinJoint& joint : mesh.joints) print.add(joint.from_bind.linear).add(joint.from_bind.offset);
+    print.add(std::span<const Index>(mesh.influence_offsets));
+    for (const SkinInfluence& influence : mesh.influences) print.add(influence.joint).add(influence.weight);
+  }
+  return print.value();
+}
+
+std::vector<Triangle> SceneVertices::triangles() const {
+  std::vector<Triangle> all;
+  for (std::size_t k = 0; k < meshes_.size(); ++k)
+    for (Triangle triangle : scene_.meshes[static_cast<std::size_t>(meshes_[k])].triangles) {
+      for (Index& v : triangle) v += first_[k];
+      all.push_back(triangle);
+    }
+  return all;
+}
+
+}  // namespace softreel

@@ -1,0 +1,114 @@
+#include "core/mesh/readers/scene_import.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/mesh/readers/mesh_import.h"
+#include "tests/core/mesh/mesh_files.h"
+#include "tests/support/gltf_scene.h"
+
+namespace softreel {
+namespace {
+
+using testing::TemporaryFolder;
+
+/// What a file of single numbers holds of 90 degrees.
+constexpr double kSingle = 1e-6;
+
+TEST(SceneImport, ReadsNodesAndTheirClip) {
+  const TemporaryFolder folder;
+  const SceneAnimation scene = import_scene(testing::write_jaw(folder.path("")), Log{});
+  ASSERT_EQ(scene.nodes.size(), 2u);
+  EXPECT_EQ(scene.nodes[1].name, "jaw");
+  EXPECT_EQ(scene.nodes[1].parent, 0);
+  ASSERT_EQ(scene.clips.size(), 1u);
+  EXPECT_EQ(scene.clips[0].name, "open");
+  EXPECT_NEAR(scene.clips[0].seconds, 1, kSingle);
+  EXPECT_EQ(pose_scene(scene, nullptr, 0).nodes[1](Vec3::Zero()), Vec3(0, 1, 0.5));
+  // A quarter turn about x takes y to z; half of the time is half of the angle.
+  const Affine end = pose_scene(scene, &scene.clips[0], 1).nodes[1];
+  EXPECT_LT((end(Vec3(0, 1, 0)) - Vec3(0, 1, 1.5)).norm(), kSingle);
+  const Affine half = pose_scene(scene, &scene.clips[0], 0.5).nodes[1];
+  const double s = std::numbers::sqrt2 / 2;
+  EXPECT_LT((half(Vec3(0, 1, 0)) - Vec3(0, 1 + s, 0.5 + s)).norm(), kSingle);
+}
+
+TEST(SceneImport, HoldsTheEndsOfAClip) {
+  const TemporaryFolder folder;
+  const SceneAnimation scene = import_scene(testing::write_jaw(folder.path("")), Log{});
+  const auto turned = [&](double seconds) { return pose_scene(scene, &scene.clips[0], seconds).nodes[1]; };
+  EXPECT_EQ(turned(-3), turned(0));
+  EXPECT_EQ(turned(7), turned(1));
+}
+
+TEST(SceneImport, SkinsByLinearBlending) {
+  const TemporaryFolder folder;
+  const std::string path = testing::write_strip(folder.path(""));
+  const SceneAnimation scene = import_scene(path, Log{});
+  const SceneVertices vertices(scene, &scene.clips.at(0), {0});
+  const SurfaceMesh rest = import_mesh(path, Log{});
+  ASSERT_EQ(vertices.count(), 10);
+  for (const double seconds : {0.0, 0.7, 2.0}) {
+    const double angle = seconds / 2 * std::numbers::pi / 2;
+    const std::vector<Index> all{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+    const std::vector<Vec3> moved = vertices.at(seconds, all);
+    for (std::size_t v = 0; v < 10; ++v) {
+      const Vec3& p = rest.positions[v];
+      const double upper = double{testing::strip_weights()[v / 2]};
+      const Vec3 q = p - Vec3(0, 1, 0);
+      const Vec3 turned(std::cos(angle) * q.x() - std::sin(angle) * q.y(),
+                        std::sin(angle) * q.x() + std::cos(angle) * q.y(), 0);
+      const Vec3 blended = (1 - upper) * p + upper * (turned + Vec3(0, 1, 0));
+      EXPECT_LT((moved[v] - blended).norm(), 2 * kSingle) << "vertex " << v << " at " << seconds << " s";
+    }
+  }
+  EXPECT_EQ(vertices.rest(), rest.positions) << "as import_mesh has it, in its order";
+}
+
+TEST(SceneImport, MorphsByTheWeightsOfTheClip) {
+  const TemporaryFolder folder;
+  const SceneAnimation scene = import_scene(testing::write_morph(folder.path("")), Log{});
+  const SceneVertices vertices(scene, &scene.clips.at(0), {0});
+  EXPECT_EQ(vertices.rest(), (std::vector<Vec3>{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()}));
+  const std::vector<Index> last{2};
+  EXPECT_LT((vertices.at(1, last)[0] - Vec3(0, 1.5, 0)).norm(), kSingle);
+  EXPECT_LT((vertices.at(0.5, last)[0] - Vec3(0, 1.25, 0)).norm(), kSingle);
+}
+
+TEST(SceneImport, PosesTellTimesApartAndContentsTellFilesApart) {
+  const TemporaryFolder folder;
+  const SceneAnimation scene = import_scene(testing::write_strip(folder.path("")), Log{});
+  const SceneVertices vertices(scene, &scene.clips.at(0), {0});
+  EXPECT_NE(vertices.pose(0.5), vertices.pose(0.6));
+  EXPECT_EQ(vertices.pose(2), vertices.pose(9));
+  SceneAnimation other = scene;
+  other.meshes[0].influences[3].weight *= 0.5;
+  EXPECT_NE(SceneVertices(other, &other.clips[0], {0}).content(), vertices.content());
+}
+
+TEST(SceneImport, WarnsOfCurvesThatAssimpDoesNotPassOn) {
+  const TemporaryFolder folder;
+  std::string path = testing::write_jaw(folder.path(""));
+  std::ifstream in(path);
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  text.replace(text.find("LINEAR"), 6, "STEP");
+  folder.write("jaw.gltf", text);
+  testing::Warnings warnings;
+  import_scene(path, warnings.log());
+  ASSERT_EQ(warnings.lines.size(), 1u);
+  EXPECT_NE(warnings.lines[0].find("STEP"), std::string::npos);
+}
+
+TEST(SceneImport, RefusesWhatIsNoScene) {
+  const TemporaryFolder folder;
+  for (const std::string& path : {folder.path("missing.glb"), folder.write("text.gltf", "no scene at all")}) try {
+      import_scene(path, Log{});
+      ADD_FAILURE() << path;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::Input);
+      EXPECT_NE(std::string(error.what()).find("Accepted"), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace softreel
