@@ -14,7 +14,7 @@ namespace {
 using namespace softreel::testing;
 
 /// The libraries behind the parts, as the names of their files begin.
-constexpr const char* kHeavy[] = {"libassimp", "libembree", "libEGL", "libepoxy", "softreel_part_"};
+constexpr const char* kHeavy[] = {"libassimp", "libembree", "libEGL", "libepoxy", "libopenvdb", "softreel_part_"};
 
 /// Adds the names of the files that one process mapped: what stands after the last / of "calling init: PATH" lines.
 void add_mapped(const std::string& loader_log, std::set<std::string>& names) {

@@ -1,0 +1,73 @@
+#include "tool/export/level_set.h"
+
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Interpolation.h>
+
+#include "tests/support/surfaces.h"
+
+namespace softreel {
+namespace {
+
+constexpr double kRadius = 0.4;
+const Vec3 kCenter(0.3, -0.2, 0.1);
+
+/// The grids of the bytes, read by OpenVDB.
+openvdb::FloatGrid::Ptr read(const std::vector<std::uint8_t>& bytes) {
+  openvdb::initialize();
+  std::istringstream text(std::string(bytes.begin(), bytes.end()));
+  const openvdb::GridPtrVecPtr grids = openvdb::io::Stream(text, /*delayLoad=*/false).getGrids();
+  EXPECT_EQ(grids->size(), 1U);
+  return openvdb::gridPtrCast<openvdb::FloatGrid>((*grids)[0]);
+}
+
+std::vector<std::uint8_t> encode(const SurfaceMesh& mesh, double voxel, int threads = 1) {
+  LevelSetParams params;
+  params.voxel = voxel;
+  return encode_level_set({mesh.positions, mesh.triangles}, params, Threads(threads));
+}
+
+double distance_at(const openvdb::FloatGrid& grid, const Vec3& p) {
+  openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler> sampler(grid);
+  return sampler.wsSample(openvdb::Vec3d(p.x(), p.y(), p.z()));
+}
+
+TEST(LevelSet, OfASphereHasItsDistancesWithinAVoxel) {
+  const double voxel = 0.02;
+  const auto grid = read(encode(testing::sphere(4, kRadius, kCenter), voxel));
+  EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET);
+  EXPECT_EQ(grid->getName(), "surface");
+  EXPECT_NEAR(grid->voxelSize()[0], voxel, 1e-12);
+  EXPECT_NEAR(grid->background(), 3 * voxel, 1e-6);
+  for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(1, 2, 3), Vec3(-3, 1, -0.5)})
+    for (const double off : {-0.04, -0.01, 0.0, 0.013, 0.04})
+      EXPECT_NEAR(distance_at(*grid, kCenter + (kRadius + off) * direction.normalized()), off, 0.2 * voxel);
+}
+
+TEST(LevelSet, FarFromTheSurfaceIsTheBackgroundWithItsSign) {
+  const double voxel = 0.02;
+  const auto grid = read(encode(testing::sphere(3, kRadius, kCenter), voxel));
+  EXPECT_NEAR(distance_at(*grid, kCenter), -3 * voxel, 1e-6) << "negative inside";
+  EXPECT_NEAR(distance_at(*grid, Vec3(5, 5, 5)), 3 * voxel, 1e-6);
+}
+
+TEST(LevelSet, IsTheSameBytesForAnyNumberOfThreadsAndWhenWrittenAgain) {
+  const SurfaceMesh mesh = testing::sphere(4, kRadius, kCenter);
+  const std::vector<std::uint8_t> once = encode(mesh, 0.015, 1);
+  EXPECT_EQ(once, encode(mesh, 0.015, 4));
+  EXPECT_EQ(once, encode(mesh, 0.015, 1));
+}
+
+TEST(EstimateVoxels, IsNearTheCountThatOpenVdbMakes) {
+  const SurfaceMesh mesh = testing::sphere(4, kRadius, kCenter);
+  LevelSetParams params;
+  params.voxel = 0.01;
+  const double made = static_cast<double>(read(encode(mesh, params.voxel))->activeVoxelCount());
+  EXPECT_NEAR(estimate_voxels({mesh.positions, mesh.triangles}, params), made, 0.25 * made);
+}
+
+}  // namespace
+}  // namespace softreel
