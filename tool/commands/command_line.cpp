@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "tool/commands/commands.h"
+#include "tool/export/formats.h"
 #include "tool/shot/schema.h"
 
 namespace softreel {
@@ -22,15 +23,15 @@ constexpr const char* kFooter =
     "Fields of shots: softreel fields [PATH]. Examples: the shots in presets/.";
 
 /// Accepts finite numbers above 0; CLI11's own check lets NaN pass and prints its bounds with 300 digits.
-CLI::Validator length() {
-  return {[](std::string& text) {
+CLI::Validator length(const char* what = "length") {
+  return {[what](std::string& text) {
             double value = 0;
             const char* const end = text.data() + text.size();
             const auto [stopped, code] = std::from_chars(text.data(), end, value);
             const bool is_length = code == std::errc{} && stopped == end && std::isfinite(value) && value > 0;
-            return is_length ? std::string() : fmt::format("{} is no length. Accepted: a number above 0.", text);
+            return is_length ? std::string() : fmt::format("{} is no {}. Accepted: a number above 0.", text, what);
           },
-          "", "length"};
+          "", what};
 }
 
 /// Where results lie, and with which fields.
@@ -132,6 +133,36 @@ void add_preview_command(CLI::App& app, Parsed& parsed, Runner& run) {
   preview->callback([&] { run = [&parsed] { return run_preview(parsed.preview); }; });
 }
 
+void add_export_command(CLI::App& app, Parsed& parsed, Runner& run) {
+  CLI::App* exporting = app.add_subcommand("export", "write the deformed meshes, in the vertex order of their files");
+  ExportWishes& wishes = parsed.exporting.wishes;
+  add_shot_options(*exporting, parsed.exporting.shot);
+  std::string formats = "with commas between, or repeated [obj]:";
+  for (const ExportFormat& format : export_formats()) formats += fmt::format("\n{}: {}", format.name, format.about);
+  exporting->add_option("--format", wishes.formats, formats)
+      ->option_text("LIST")
+      ->delimiter(',')
+      ->expected(1)
+      ->take_all()
+      ->group("Files");
+  exporting->add_option("--space", wishes.space, "object (the file's own) | world [object]")->group("Files");
+  exporting
+      ->add_option("--unit", wishes.unit,
+                   "unit of the exported world: m | cm | mm | in | ft, or the metres of one unit [m]")
+      ->group("Files");
+  exporting->add_option("--up", wishes.up, "axis of the exported world that points up: y | z [y]")->group("Files");
+  exporting->add_option("--fps", wishes.fps, "frames a second at which it plays, above 0 [shot.fps]")
+      ->check(length("rate"))
+      ->group("Files");
+  exporting
+      ->add_option("--subframes", wishes.subframes,
+                   "samples between two frames, 0 to 99, on straight lines between the steps of the simulation [0]")
+      ->check(CLI::Range(0, 99))
+      ->group("Files");
+  exporting->add_flag("--normals", wishes.normals, "normals of the vertices too")->group("Files");
+  exporting->callback([&] { run = [&parsed] { return run_export(parsed.exporting); }; });
+}
+
 void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   CLI::App* render = app.add_subcommand("render", "simulate a shot and trace its pictures and movie");
   add_shot_options(*render, parsed.shot);
@@ -164,12 +195,7 @@ void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
   add_shot_options(*simulate, parsed.shot);
   simulate->callback([&] { run = [&parsed] { return run_simulate(parsed.shot); }; });
 
-  CLI::App* exporting = app.add_subcommand("export", "write the deformed meshes, in the vertex order of their files");
-  add_shot_options(*exporting, parsed.exporting.shot);
-  exporting->add_option("--format", parsed.exporting.format, "obj | ply | pc2 [obj]")->group("Files");
-  exporting->add_option("--space", parsed.exporting.space, "object (the file's own) | world [object]")->group("Files");
-  exporting->callback([&] { run = [&parsed] { return run_export(parsed.exporting); }; });
-
+  add_export_command(app, parsed, run);
   add_preview_command(app, parsed, run);
 
   CLI::App* golden = app.add_subcommand(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tool/commands/session.h"
+#include "tool/export/export_options.h"
 #include "tool/report/studio.h"
 #include "tool/stages/sheet_stage.h"
 
@@ -32,8 +33,7 @@ int run_plan(const ShotOptions& options);
 
 struct ExportOptions {
   ShotOptions shot;
-  std::string format = "obj";    ///< obj | ply | pc2
-  std::string space = "object";  ///< object: the file's own space; world: as placed in the scene
+  ExportWishes wishes;
 };
 
 /// Writes the deformed surfaces in the vertex order of their files.

@@ -1,177 +1,142 @@
 #include <chrono>
-#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "core/base/error.h"
+#include "core/base/check.h"
 #include "tool/commands/commands.h"
-#include "tool/export/obj_export.h"
-#include "tool/export/pc2_export.h"
-#include "tool/export/ply_export.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/outputs.h"
-#include "tool/stages/shot_run.h"
-#include "tool/stages/simulate_key.h"
+#include "tool/export/body_samples.h"
+#include "tool/export/export_series.h"
 
 namespace softreel {
 namespace {
 
-/// Positions of the file's vertices at a frame, in the space asked for.
-std::vector<Vec3> exported_positions(const LoadedBody& loaded, const std::vector<Vec3>& deformed,
-                                     const std::string& space) {
-  if (space == "world") return deformed;
-  std::vector<Vec3> positions(deformed.size());
-  for (std::size_t v = 0; v < deformed.size(); ++v)
-    positions[v] = undo(loaded.placement, loaded.file_mesh.positions[v], loaded.surface.positions[v], deformed[v]);
-  return positions;
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void check_options(const ExportOptions& options) {
-  if (options.format != "obj" && options.format != "ply" && options.format != "pc2")
-    throw input_error(fmt::format("--format: \"{}\" is not known.\n  Accepted: obj, ply, pc2.", options.format));
-  if (options.space != "object" && options.space != "world")
-    throw input_error(
-        fmt::format("--space: \"{}\" is not known.\n  Accepted: object (the file's own), world.", options.space));
+/// One series a body, or one for all, of each format.
+std::vector<ExportSeries> make_series(const std::vector<const ExportFormat*>& formats, const ExportSettings& settings,
+                                      const ExportFrames& frames, ShotRun& run, Outputs& outputs) {
+  std::vector<std::size_t> all(run.body_count());
+  for (std::size_t b = 0; b < all.size(); ++b) all[b] = b;
+  std::vector<ExportSeries> series;
+  for (const ExportFormat* format : formats) {
+    if (format->file_per == FilePer::Shot)
+      series.emplace_back(*format, settings, frames, all, run, outputs);
+    else
+      for (const std::size_t b : all)
+        series.emplace_back(*format, settings, frames, std::vector<std::size_t>{b}, run, outputs);
+  }
+  return series;
 }
 
-/// One body on its way to files.
+/// Takes the samples of a body, frame by frame, to the series that want them.
 class BodyExport {
  public:
-  BodyExport(const ExportOptions& options, const FrameSpan& frames, ShotRun& run, std::size_t body, Outputs& outputs)
-      : options_(options), frames_(frames), run_(run), body_(body), outputs_(outputs) {}
-
-  std::string made_line() const {
-    if (is_cache()) return path(frames_.first);
-    return path(frames_.first) + " .. " + path(frames_.last);
+  BodyExport(std::size_t body, const ExportSettings& settings, const ExportFrames& frames, ShotRun& run,
+             std::vector<ExportSeries>& series)
+      : body_(body), settings_(settings), frames_(frames), run_(run) {
+    for (ExportSeries& one : series)
+      if (one.has(body)) series_.push_back({&one, {}});
   }
 
-  /// True if the file that holds this frame is there, made of the same.
-  bool is_kept(int frame) {
-    if (!is_cache()) return outputs_.is_done(path(frame), key(frame));
-    if (!kept_) kept_ = outputs_.is_done(path(frame), cache_key());
-    return *kept_;
+  /// Asked once a frame and series, before `write`.
+  void look_up(int frame) {
+    for (Taker& taker : series_) taker.wanted.clear();
+    for (int sample = first_sample(frame); sample <= last_sample(frame); ++sample)
+      for (Taker& taker : series_) taker.wanted.push_back(taker.series->wants(sample));
   }
 
-  void write(int frame, const std::vector<Vec3>& deformed) {
-    const auto start = std::chrono::steady_clock::now();
-    const LoadedBody& loaded = run_.loaded(body_);
-    const std::vector<Vec3> positions = exported_positions(loaded, deformed, options_.space);
-    const auto seconds = [&] {
-      seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      return seconds_;
-    };
-    if (is_cache()) {
-      if (!cache_) cache_ = std::make_unique<PointCache>(path(frame), loaded.surface.positions.size(), frames_);
-      cache_->writer.append(positions);
-      seconds();
-      return;
-    }
-    const Bytes bytes =
-        options_.format == "obj" ? encode_obj(loaded.file_mesh, positions) : encode_ply(loaded.file_mesh, positions);
-    seconds_ = 0;
-    outputs_.write(path(frame), key(frame), bytes, seconds());
+  /// The frame's sample, and those between it and the frame before.
+  void write(int frame) {
+    bool any = false, tets = false;
+    for (const Taker& taker : series_)
+      for (const bool wanted : taker.wanted) {
+        any = any || wanted;
+        tets = tets || (wanted && taker.series->format().needs_tets);
+      }
+    if (!any) return;
+    const int between = last_sample(frame) - first_sample(frame);
+    SkinRequest request{settings_.normals, 0, 1};
+    request.nodes = tets;
+    request.shutter = static_cast<double>(between) / (between + 1);
+    request.segments = std::max(between, 1);
+    const SkinnedBody skinned = run_.skin_body(body_, frame, request);
+    CHECK(skinned.times.size() == static_cast<std::size_t>(between) + 1);
+    if (tets && materials_.empty())
+      materials_ =
+          element_materials(run_.resolved(body_), run_.settings(body_), run_.loaded(body_), run_.filled(body_)->mesh);
+    const ScopedStage stage(run_.context().times, "export");
+    for (int k = 0; k <= between; ++k) write_sample(first_sample(frame) + k, k, skinned.times[k]);
   }
-
-  void finish() {
-    if (!cache_) return;
-    cache_->writer.finish();
-    cache_->file.commit();
-    outputs_.enter(path(frames_.first), cache_key(), seconds_);
-  }
-
-  double saved_seconds(int frame) const {
-    const auto entry = outputs_.entry(path(frame));
-    return entry ? entry->seconds : 0;
-  }
-  bool is_cache() const { return options_.format == "pc2"; }
 
  private:
-  /// A point cache that grows frame by frame without a name.
-  struct PointCache {
-    PointCache(const std::string& path, std::size_t points, const FrameSpan& frames)
-        : file(path),
-          writer({static_cast<Index>(points), frames.count(), static_cast<double>(frames.first), 1.0},
-                 [this](std::span<const std::uint8_t> bytes) { file.write(bytes); }) {}
-    AtomicFile file;
-    Pc2Writer writer;
+  struct Taker {
+    ExportSeries* series;
+    std::vector<bool> wanted;  ///< per sample of the frame
   };
 
-  std::string path(int frame) const {
-    const std::string& name = run_.settings(body_).name;
-    return is_cache() ? outputs_.path(fmt::format("{}.pc2", name))
-                      : outputs_.path(fmt::format("{}.{:04}.{}", name, frame, options_.format));
+  int last_sample(int frame) const { return (frame - frames_.first) * (settings_.subframes + 1); }
+  int first_sample(int frame) const { return frame == frames_.first ? 0 : last_sample(frame) - settings_.subframes; }
+
+  void write_sample(int sample, int place, const SkinnedBody::Time& time) {
+    const auto start = std::chrono::steady_clock::now();
+    const LoadedBody& loaded = run_.loaded(body_);
+    const std::vector<Vec3> positions = export_positions(settings_, loaded, time.positions);
+    const std::vector<Vec3> normals = export_normals(settings_, loaded, time.normals);
+    std::optional<TetSample> tets;
+    if (!time.nodes.empty()) tets.emplace(*run_.filled(body_), materials_, time.nodes);
+    double shared = seconds_since(start);
+    for (Taker& taker : series_) {
+      if (!taker.wanted[static_cast<std::size_t>(place)]) continue;
+      const double frame = sample_times(settings_, frames_).frame(sample);
+      taker.series->append(sample, {body_, frame, positions, normals, tets ? &*tets : nullptr}, shared);
+      shared = 0;
+    }
   }
 
-  StageKey key(int frame) const {
-    const BodySimulation& simulation = run_.simulation(body_);
-    return KeyHasher("export 2")
-        .add(options_.format)
-        .add(options_.space)
-        .add(run_.loaded(body_).file_key)
-        .add(run_.loaded(body_).key)
-        .add(simulation.filled_key())
-        .add(simulation.frame_key(frame))
-        .key();
-  }
-
-  StageKey cache_key() const {
-    KeyHasher all("point cache 2");
-    for (int frame = frames_.first; frame <= frames_.last; ++frame) all.add(key(frame));
-    return all.add(frames_.first).key();
-  }
-
-  const ExportOptions& options_;
-  FrameSpan frames_;
-  ShotRun& run_;
   std::size_t body_;
-  Outputs& outputs_;
-  std::optional<bool> kept_;
-  std::unique_ptr<PointCache> cache_;
-  double seconds_ = 0;
+  const ExportSettings& settings_;
+  ExportFrames frames_;
+  ShotRun& run_;
+  std::vector<Taker> series_;
+  std::vector<ElementMaterial> materials_;  ///< per tetrahedron; empty until a format needs them
 };
 
 }  // namespace
 
 int run_export(const ExportOptions& options) {
-  check_options(options);
+  const std::vector<const ExportFormat*> formats = chosen_formats(options.wishes);
   if (options.shot.dry_run) return run_plan(options.shot);
   Session session(options.shot);
   const Shot& shot = session.shot();
-  const FrameSpan frames = session.frames();
+  const ExportSettings settings = export_settings(options.wishes, formats, shot.settings.fps);
+  const ExportFrames frames{session.frames().first, session.frames().last};
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
   ShotRun run(shot, session.context());
   session.prepare(outputs, run);
   outputs.note_simulation();
-  std::vector<BodyExport> exports;
-  for (std::size_t b = 0; b < run.body_count(); ++b) exports.emplace_back(options, frames, run, b, outputs);
-  RunReport files;
-  session.console().begin("frames", frames.count());
+  std::vector<ExportSeries> series = make_series(formats, settings, frames, run, outputs);
+  std::vector<BodyExport> bodies;
+  for (std::size_t b = 0; b < run.body_count(); ++b) bodies.emplace_back(b, settings, frames, run, series);
+  session.console().begin("frames", session.frames().count());
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     session.context().stop_if_cancelled();
-    for (std::size_t b = 0; b < exports.size(); ++b) {
-      BodyExport& one = exports[b];
-      const bool counts = !one.is_cache() || frame == frames.first;
-      if (one.is_kept(frame)) {
-        files.files_kept += counts ? 1 : 0;
-        files.files_saved_seconds += counts ? one.saved_seconds(frame) : 0;
-        continue;
-      }
-      const SkinnedBody skinned = run.skin_body(b, frame, {false, 0, 1});
-      const ScopedStage stage(session.context().times, "export");
-      one.write(frame, skinned.times.back().positions);
-      files.files_written += counts ? 1 : 0;
+    for (BodyExport& body : bodies) {
+      body.look_up(frame);
+      body.write(frame);
     }
     session.console().advance(frame - frames.first + 1, fmt::format("frame {}", frame));
   }
+  for (ExportSeries& one : series) one.finish();
   RunReport report = session.report("export", run);
-  for (BodyExport& one : exports) {
-    one.finish();
+  for (const ExportSeries& one : series) {
     report.made.push_back(one.made_line());
+    report.files_written += one.counts().written;
+    report.files_kept += one.counts().kept;
+    report.files_saved_seconds += one.counts().saved_seconds;
   }
-  report.files_written = files.files_written;
-  report.files_kept = files.files_kept;
-  report.files_saved_seconds = files.files_saved_seconds;
   session.finish(report);
   return 0;
 }

@@ -5,13 +5,15 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "tool/export/whole_file.h"
 
 namespace softreel {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-void write_polygons(const SurfaceMesh& mesh, Bytes& bytes) {
+/// A corner is VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or VERTEX/TEXTURE/NORMAL.
+void write_polygons(const SurfaceMesh& mesh, bool has_normals, Bytes& bytes) {
   const PolygonList& polygons = mesh.polygons;
   const auto out = std::back_inserter(bytes);
   Index group = -1;
@@ -24,8 +26,10 @@ void write_polygons(const SurfaceMesh& mesh, Bytes& bytes) {
     for (Index c = polygons.offsets[p]; c < polygons.offsets[p + 1]; ++c) {
       const auto corner = static_cast<std::size_t>(c);
       const Index texture = polygons.corner_textures.empty() ? -1 : polygons.corner_textures[corner];
-      fmt::format_to(out, " {}", polygons.corner_vertices[corner] + 1);
+      const Index vertex = polygons.corner_vertices[corner] + 1;
+      fmt::format_to(out, " {}", vertex);
       if (texture >= 0) fmt::format_to(out, "/{}", texture + 1);
+      if (has_normals) fmt::format_to(out, "{}/{}", texture >= 0 ? "" : "/", vertex);
     }
     bytes.push_back('\n');
   }
@@ -33,15 +37,28 @@ void write_polygons(const SurfaceMesh& mesh, Bytes& bytes) {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, const std::vector<Vec3>& positions) {
+std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, std::span<const Vec3> positions,
+                                     std::span<const Vec3> normals) {
   CHECK(positions.size() == mesh.positions.size());
+  CHECK(normals.empty() || normals.size() == positions.size());
   Bytes bytes;
-  bytes.reserve(64 * positions.size() + 16 * mesh.polygons.corner_vertices.size());
+  bytes.reserve(64 * (positions.size() + normals.size()) + 16 * mesh.polygons.corner_vertices.size());
   const auto out = std::back_inserter(bytes);
   for (const Vec3& p : positions) fmt::format_to(out, "v {} {} {}\n", p.x(), p.y(), p.z());
   for (const Vec2& t : mesh.texture_coordinates) fmt::format_to(out, "vt {} {}\n", t.x(), t.y());
-  write_polygons(mesh, bytes);
+  for (const Vec3& n : normals) fmt::format_to(out, "vn {} {} {}\n", n.x(), n.y(), n.z());
+  write_polygons(mesh, !normals.empty(), bytes);
   return bytes;
+}
+
+ExportFormat obj_format() {
+  ExportFormat format;
+  format.name = "obj";
+  format.about = "Wavefront OBJ, a file a frame, with polygons, texture coordinates and groups; exact";
+  format.version = 3;
+  format.has_normals = true;
+  format.make = whole_file_writer(encode_obj);
+  return format;
 }
 
 }  // namespace softreel

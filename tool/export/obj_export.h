@@ -5,14 +5,18 @@
 #include <vector>
 
 #include "core/mesh/surface_mesh.h"
+#include "tool/export/exporter.h"
 
 namespace softreel {
 
-/// The bytes of an .obj file. mesh: as imported; positions: one per vertex of the file, in the file's unit.
+/// The bytes of an .obj file. mesh: as imported; positions: one per vertex of the file; normals: the same, or none.
 ///
 /// All vertices (used or not), texture coordinates, polygons and the group of each polygon are written; numbers are the
 /// shortest decimals that read back as the same doubles. Vertex groups that no polygon names cannot be said in OBJ: PLY
 /// keeps them.
-std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, const std::vector<Vec3>& positions);
+std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, std::span<const Vec3> positions,
+                                     std::span<const Vec3> normals = {});
+
+ExportFormat obj_format();
 
 }  // namespace softreel

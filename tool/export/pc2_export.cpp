@@ -1,13 +1,13 @@
 #include "tool/export/pc2_export.h"
 
 #include <bit>
-#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "tool/export/float_values.h"
 
 namespace softreel {
 namespace {
@@ -35,9 +35,22 @@ std::array<std::uint8_t, 32> encode_header(const Pc2Params& params) {
   return header;
 }
 
+class Pc2File : public ExportWriter {
+ public:
+  explicit Pc2File(const ExportTarget& target)
+      : writer_({static_cast<Index>(target.bodies[0].mesh->positions.size()), target.times.count, target.times.first,
+                 1.0 / target.times.per_frame},
+                target.sink) {}
+  void append(const ExportSample& sample) override { writer_.append(sample.positions); }
+  void finish() override { writer_.finish(); }
+
+ private:
+  Pc2Writer writer_;
+};
+
 }  // namespace
 
-Pc2Writer::Pc2Writer(const Pc2Params& params, Sink sink) : params_(params), sink_(std::move(sink)) {
+Pc2Writer::Pc2Writer(const Pc2Params& params, ExportSink sink) : params_(params), sink_(std::move(sink)) {
   if (params.points < 1 || params.samples < 1)
     throw input_error(
         fmt::format("a point cache of {} points and {} frames holds nothing.\n"
@@ -50,16 +63,7 @@ void Pc2Writer::append(std::span<const Vec3> positions) {
   CHECK(positions.size() == static_cast<std::size_t>(params_.points));
   CHECK(written_ < params_.samples);
   sample_.clear();
-  for (const Vec3& p : positions)
-    for (int k = 0; k < 3; ++k) {
-      sample_.push_back(static_cast<float>(p[k]));
-      if (!std::isfinite(sample_.back()))
-        throw work_error(
-            fmt::format("point cache, sample {}: vertex {} has the coordinate {}, which is no finite "
-                        "float32.\n  Accepted: finite positions. Look for a vertex in the mesh file or "
-                        "a step of the simulation that is not finite, or export OBJ or PLY.",
-                        written_ + 1, (sample_.size() + 2) / 3, p[k]));
-    }
+  append_floats(fmt::format("point cache, sample {}", written_ + 1), positions, sample_);
   sink_({reinterpret_cast<const std::uint8_t*>(sample_.data()), sample_.size() * sizeof(float)});
   ++written_;
 }
@@ -70,6 +74,16 @@ void Pc2Writer::finish() const {
         fmt::format("point cache: {} of {} samples were written.\n  Accepted: all of them. Run the export "
                     "again.",
                     written_, params_.samples));
+}
+
+ExportFormat pc2_format() {
+  ExportFormat format;
+  format.name = "pc2";
+  format.about = "PC2 point cache, a file a body, positions alone; float32";
+  format.file_per = FilePer::Body;
+  format.version = 3;
+  format.make = [](const ExportTarget& target) { return std::make_unique<Pc2File>(target); };
+  return format;
 }
 
 }  // namespace softreel

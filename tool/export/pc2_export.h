@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/types.h"
+#include "tool/export/exporter.h"
 
 namespace softreel {
 
@@ -24,11 +25,8 @@ struct Pc2Params {
 /// double.
 class Pc2Writer {
  public:
-  /// Takes the next bytes of the file; they are valid during the call only.
-  using Sink = std::function<void(std::span<const std::uint8_t>)>;
-
   /// Writes the header at once. Throws input_error if there is nothing to write: no point or no sample.
-  Pc2Writer(const Pc2Params& params, Sink sink);
+  Pc2Writer(const Pc2Params& params, ExportSink sink);
 
   /// positions: one per point, in the file's unit. Throws work_error if a coordinate is not finite in float32, naming
   /// the point: readers of point caches show such frames as garbage without a word.
@@ -39,9 +37,11 @@ class Pc2Writer {
 
  private:
   Pc2Params params_;
-  Sink sink_;
+  ExportSink sink_;
   Index written_ = 0;
   std::vector<float> sample_;
 };
+
+ExportFormat pc2_format();
 
 }  // namespace softreel

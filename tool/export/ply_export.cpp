@@ -9,6 +9,7 @@
 
 #include "core/base/check.h"
 #include "core/mesh/readers/ply_header.h"
+#include "tool/export/whole_file.h"
 
 namespace softreel {
 namespace {
@@ -17,8 +18,8 @@ static_assert(std::endian::native == std::endian::little, "values are written as
 
 class PlyEncoder {
  public:
-  PlyEncoder(const SurfaceMesh& mesh, const std::vector<Vec3>& positions)
-      : mesh_(mesh), positions_(positions), vertex_textures_(find_vertex_textures()) {
+  PlyEncoder(const SurfaceMesh& mesh, std::span<const Vec3> positions, std::span<const Vec3> normals)
+      : mesh_(mesh), positions_(positions), normals_(normals), vertex_textures_(find_vertex_textures()) {
     has_face_textures_ = !mesh.polygons.corner_textures.empty() && !vertex_textures_;
     const std::vector<Index>& offsets = mesh.polygons.offsets;
     for (std::size_t p = 0; p + 1 < offsets.size(); ++p)
@@ -57,6 +58,7 @@ class PlyEncoder {
         "ply\nformat binary_little_endian 1.0\ncomment positions in the file's own unit and vertex order\n"
         "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
         positions_.size());
+    if (!normals_.empty()) header += "property double nx\nproperty double ny\nproperty double nz\n";
     if (vertex_textures_) header += "property double s\nproperty double t\n";
     for (const VertexGroup& group : mesh_.groups)
       header += fmt::format("property uchar {}{}\n", detail::kPlyGroupPrefix, detail::encode_ply_name(group.name));
@@ -75,6 +77,7 @@ class PlyEncoder {
     }
     for (std::size_t v = 0; v < positions_.size(); ++v) {
       for (int k = 0; k < 3; ++k) put(positions_[v][k]);
+      for (int k = 0; k < 3 && !normals_.empty(); ++k) put(normals_[v][k]);
       if (vertex_textures_)
         for (int k = 0; k < 2; ++k) put((*vertex_textures_)[v][k]);
       for (const std::vector<std::uint8_t>& member : members) put(member[v]);
@@ -111,7 +114,7 @@ class PlyEncoder {
   }
 
   const SurfaceMesh& mesh_;
-  const std::vector<Vec3>& positions_;
+  std::span<const Vec3> positions_, normals_;
   std::optional<std::vector<Vec2>> vertex_textures_;
   bool has_face_textures_ = false;
   Index most_corners_ = 0;
@@ -120,9 +123,21 @@ class PlyEncoder {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_ply(const SurfaceMesh& mesh, const std::vector<Vec3>& positions) {
+std::vector<std::uint8_t> encode_ply(const SurfaceMesh& mesh, std::span<const Vec3> positions,
+                                     std::span<const Vec3> normals) {
   CHECK(positions.size() == mesh.positions.size());
-  return PlyEncoder(mesh, positions).encode();
+  CHECK(normals.empty() || normals.size() == positions.size());
+  return PlyEncoder(mesh, positions, normals).encode();
+}
+
+ExportFormat ply_format() {
+  ExportFormat format;
+  format.name = "ply";
+  format.about = "binary PLY, a file a frame, with polygons, texture coordinates and groups; exact";
+  format.version = 3;
+  format.has_normals = true;
+  format.make = whole_file_writer(encode_ply);
+  return format;
 }
 
 }  // namespace softreel

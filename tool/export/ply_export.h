@@ -5,15 +5,20 @@
 #include <vector>
 
 #include "core/mesh/surface_mesh.h"
+#include "tool/export/exporter.h"
 
 namespace softreel {
 
-/// The bytes of a binary little-endian .ply file. mesh: as imported; positions: one per vertex, in the file's unit.
+/// The bytes of a binary little-endian .ply file. mesh: as imported; positions: one per vertex; normals: the same, or
+/// none.
 ///
-/// vertex: double x, y, z (double, so that nothing is rounded); double s, t where each vertex has one texture
-/// coordinate; uchar group_NAME per vertex group (names as in core/mesh/readers/ply_reader.h). face: vertex_indices;
-/// where texture coordinates differ between the corners of a vertex, the list texcoord of u and v per corner instead of
-/// s and t.
-std::vector<std::uint8_t> encode_ply(const SurfaceMesh& mesh, const std::vector<Vec3>& positions);
+/// vertex: double x, y, z (double, so that nothing is rounded); double nx, ny, nz with normals; double s, t where each
+/// vertex has one texture coordinate; uchar group_NAME per vertex group (names as in core/mesh/readers/ply_reader.h).
+/// face: vertex_indices; where texture coordinates differ between the corners of a vertex, the list texcoord of u and v
+/// per corner instead of s and t.
+std::vector<std::uint8_t> encode_ply(const SurfaceMesh& mesh, std::span<const Vec3> positions,
+                                     std::span<const Vec3> normals = {});
+
+ExportFormat ply_format();
 
 }  // namespace softreel

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "tool/stages/atomic_file.h"
+#include "tool/stages/byte_hasher.h"
 #include "tool/stages/file_lock.h"
 
 namespace softreel {
@@ -116,7 +117,7 @@ OutputState Outputs::state(const std::string& path, const StageKey& key) const {
   const OutputState claimed = claimed_state(path, key);
   if (claimed != OutputState::Done) return claimed;
   try {
-    return hash_bytes(read_file(path)) == entry(path)->checksum ? OutputState::Done : OutputState::Damaged;
+    return hash_file(path) == entry(path)->checksum ? OutputState::Done : OutputState::Damaged;
   } catch (const Error&) {
     return OutputState::Damaged;  // a folder of this name, say
   }
@@ -145,7 +146,11 @@ void Outputs::link(const std::string& path, const StageKey& key, const std::stri
 }
 
 void Outputs::enter(const std::string& path, const StageKey& key, double seconds) {
-  insert(path, {key, hash_bytes(read_file(path)), seconds, settings_id_});
+  enter(path, key, hash_file(path), seconds);
+}
+
+void Outputs::enter(const std::string& path, const StageKey& key, const StageKey& checksum, double seconds) {
+  insert(path, {key, checksum, seconds, settings_id_});
 }
 
 void Outputs::remove(const std::vector<std::string>& paths) {

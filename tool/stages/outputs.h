@@ -63,6 +63,8 @@ class Outputs {
             std::span<const std::uint8_t> bytes, double seconds);
   /// Enters a file that somebody else wrote (ffmpeg).
   void enter(const std::string& path, const StageKey& key, double seconds);
+  /// The same for a file whose checksum is known.
+  void enter(const std::string& path, const StageKey& key, const StageKey& checksum, double seconds);
   /// Removes files, and their entries.
   void remove(const std::vector<std::string>& paths);
 

@@ -171,12 +171,13 @@ SkinnedBody ShotRun::skin_body(std::size_t index, int frame, const SkinRequest& 
   SkinnedBody skinned;
   for (int k = 0; k <= segments; ++k) {
     const double time = segments == 0 ? 0.0 : request.shutter * (static_cast<double>(k) / segments - 1);
-    const std::vector<Vec3> nodes = positions_between(steps, time);
+    std::vector<Vec3> nodes = positions_between(steps, time);
     SkinnedBody::Time& at = skinned.times.emplace_back();
     at.positions =
         skin_positions(body.loaded.surface.positions, filled.embedding, filled.mesh, nodes, context_.threads);
     if (request.normals)
       at.normals = skin_normals(filled.normals, filled.embedding, filled.mesh, nodes, context_.threads);
+    if (request.nodes) at.nodes = std::move(nodes);
   }
   if (request.next) skinned.next_positions = next_positions(body, frame, skinned.times.back().positions, previous);
   return skinned;

@@ -20,6 +20,7 @@ struct SkinnedBody {
   struct Time {
     std::vector<Vec3> positions;  ///< as surface.positions, m
     std::vector<Vec3> normals;    ///< empty if not asked for
+    std::vector<Vec3> nodes;      ///< of the tetrahedra, m; empty if not asked for
   };
   std::vector<Time> times;           ///< times.back() is the frame itself
   std::vector<Vec3> next_positions;  ///< at the next frame, if asked for
@@ -37,6 +38,7 @@ struct SkinRequest {
   bool next = false;
   HeatQuantity heat = HeatQuantity::None;
   bool strain = false;
+  bool nodes = false;  ///< of the tetrahedra
 };
 
 /// What becomes of an error dial that was not turned yet.

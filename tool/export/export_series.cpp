@@ -1,0 +1,184 @@
+#include "tool/export/export_series.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "core/base/check.h"
+#include "tool/export/body_samples.h"
+#include "tool/stages/byte_hasher.h"
+#include "tool/stages/simulate_key.h"
+
+namespace softreel {
+namespace {
+
+/// Frames of the simulation that a sample is made of: the one at or after it, and whether it lies before that.
+struct SimulatedFrame {
+  int frame = 0;
+  bool is_between = false;
+};
+
+SimulatedFrame simulated_frame(const ExportFrames& frames, int per_frame, int sample) {
+  return {frames.first + (sample + per_frame - 1) / per_frame, sample % per_frame != 0};
+}
+
+void add(KeyHasher& key, const Camera& c) {
+  key.add(c.position).add(c.target).add(c.up).add(c.focal_length_mm).add(c.sensor_width_mm).add(c.f_number);
+  key.add(c.focus_distance);
+}
+
+}  // namespace
+
+SampleTimes sample_times(const ExportSettings& settings, const ExportFrames& frames) {
+  const int per_frame = settings.subframes + 1;
+  return {static_cast<double>(frames.first), per_frame, (frames.last - frames.first) * per_frame + 1};
+}
+
+struct ExportSeries::Growing {
+  Growing(std::string where, StageKey made_of) : path(std::move(where)), key(std::move(made_of)), file(path) {}
+
+  std::string path;
+  StageKey key;
+  AtomicFile file;
+  ByteHasher checksum;
+  std::unique_ptr<ExportWriter> writer;
+  double seconds = 0;
+};
+
+ExportSeries::ExportSeries(const ExportFormat& format, const ExportSettings& settings, const ExportFrames& frames,
+                           std::vector<std::size_t> bodies, ShotRun& run, Outputs& outputs)
+    : format_(format),
+      settings_(settings),
+      frames_(frames),
+      times_(sample_times(settings, frames)),
+      bodies_(std::move(bodies)),
+      run_(run),
+      outputs_(outputs),
+      camera_(export_camera(run)) {}
+
+ExportSeries::ExportSeries(ExportSeries&&) noexcept = default;
+ExportSeries::~ExportSeries() = default;
+
+bool ExportSeries::has(std::size_t body) const {
+  return std::find(bodies_.begin(), bodies_.end(), body) != bodies_.end();
+}
+
+bool ExportSeries::wants(int sample) {
+  if (wants_all_) return *wants_all_;
+  const bool is_done = outputs_.is_done(path(sample), key(sample));
+  if (one_file()) wants_all_ = !is_done;
+  if (is_done) {
+    ++counts_.kept;
+    if (const auto entry = outputs_.entry(path(sample))) counts_.saved_seconds += entry->seconds;
+  }
+  return !is_done;
+}
+
+void ExportSeries::append(int sample, const ExportSample& data, double seconds) {
+  if (!growing_) {
+    growing_ = std::make_unique<Growing>(path(sample), key(sample));
+    growing_->writer = format_.make(target(sample));
+  }
+  ExportSample own = data;
+  own.body = static_cast<std::size_t>(std::find(bodies_.begin(), bodies_.end(), data.body) - bodies_.begin());
+  CHECK(own.body < bodies_.size());
+  growing_->writer->append(own);
+  growing_->seconds += seconds;
+  if (!one_file()) close();
+}
+
+void ExportSeries::close() {
+  growing_->writer->finish();
+  growing_->writer.reset();
+  growing_->file.commit();
+  outputs_.enter(growing_->path, growing_->key, growing_->checksum.key(), growing_->seconds);
+  growing_.reset();
+  ++counts_.written;
+}
+
+void ExportSeries::finish() {
+  if (growing_) close();
+  if (!format_.index_extension.empty()) write_index();
+}
+
+/// A list of all samples, kept or written.
+void ExportSeries::write_index() {
+  std::vector<SeriesEntry> entries;
+  for (int sample = 0; sample < times_.count; ++sample)
+    entries.push_back({std::filesystem::path(path(sample)).filename().string(), times_.frame(sample),
+                       times_.frame(sample) / settings_.fps});
+  const std::string text = format_.make_index(entries), where = outputs_.path(stem() + format_.index_extension);
+  const StageKey key = KeyHasher("series").add(format_.name).add(text).key();
+  if (outputs_.is_done(where, key)) {
+    ++counts_.kept;
+    return;
+  }
+  outputs_.write(where, key, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, 0);
+  ++counts_.written;
+}
+
+std::string ExportSeries::made_line() const {
+  if (one_file() || times_.count == 1) return path(0);
+  return path(0) + " .. " + path(times_.count - 1);
+}
+
+/// Outputs puts the shot's name before it; "BODY." or nothing.
+std::string ExportSeries::stem() const {
+  return format_.file_per == FilePer::Shot ? "" : run_.settings(bodies_[0]).name + ".";
+}
+
+/// Samples between frames are numbered by thousandths of a frame, as are frames beside them, so that names sort by
+/// time.
+std::string ExportSeries::path(int sample) const {
+  if (one_file()) return outputs_.path(stem() + format_.name);
+  const int frame = frames_.first + sample / times_.per_frame;
+  if (times_.per_frame == 1) return outputs_.path(fmt::format("{}{:04}.{}", stem(), frame, format_.name));
+  const int thousandths = 1000 * (sample % times_.per_frame) / times_.per_frame;
+  return outputs_.path(fmt::format("{}{:04}.{:03}.{}", stem(), frame, thousandths, format_.name));
+}
+
+StageKey ExportSeries::sample_key(int sample) const {
+  KeyHasher key("export 3");
+  key.add(format_.name).add(format_.version).add(settings_.space).add(settings_.meters_per_unit).add(settings_.up);
+  key.add(settings_.normals).add(format_.has_seconds ? settings_.fps : 0.0).add(times_.frame(sample));
+  const SimulatedFrame simulated = simulated_frame(frames_, times_.per_frame, sample);
+  for (const std::size_t body : bodies_) {
+    const BodySimulation& simulation = run_.simulation(body);
+    key.add(run_.settings(body).name).add(run_.loaded(body).file_key).add(run_.loaded(body).key);
+    key.add(simulation.filled_key()).add(simulation.frame_key(simulated.frame));
+    if (simulated.is_between) key.add(simulation.frame_key(simulated.frame - 1));
+    if (!format_.needs_look) continue;
+    const Appearance look = export_body(settings_, run_, body, times_.first).appearance;
+    key.add(look.base_color).add(look.roughness).add(look.metallic);
+  }
+  if (format_.needs_camera) add(key, camera_(times_.frame(sample)));
+  return key.key();
+}
+
+const StageKey& ExportSeries::whole_key() {
+  if (!whole_key_.empty()) return whole_key_;
+  KeyHasher all("export of all frames 1");
+  for (int sample = 0; sample < times_.count; ++sample) all.add(sample_key(sample));
+  whole_key_ = all.key();
+  return whole_key_;
+}
+
+ExportTarget ExportSeries::target(int sample) const {
+  ExportTarget target;
+  target.settings = settings_;
+  target.shot = run_.shot().settings.name;
+  for (const std::size_t body : bodies_) target.bodies.push_back(export_body(settings_, run_, body, times_.first));
+  target.times = one_file() ? times_ : SampleTimes{times_.frame(sample), 1, 1};
+  target.camera = camera_;
+  const RenderParams& picture = run_.shot().render.params;
+  target.aspect = static_cast<double>(picture.width) / picture.height;
+  target.sink = [growing = growing_.get()](std::span<const std::uint8_t> bytes) {
+    growing->checksum.add(bytes);
+    growing->file.write(bytes);
+  };
+  target.folder = outputs_.folder();
+  return target;
+}
+
+}  // namespace softreel

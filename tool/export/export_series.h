@@ -1,0 +1,82 @@
+/// The files that one format makes of one body, or of the whole shot: which are kept, which grow, which are done.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tool/export/exporter.h"
+#include "tool/stages/atomic_file.h"
+#include "tool/stages/outputs.h"
+#include "tool/stages/shot_run.h"
+
+namespace softreel {
+
+/// The frames of an export, both included.
+struct ExportFrames {
+  int first = 1, last = 1;
+};
+
+/// What a series cost and saved.
+struct SeriesCounts {
+  int written = 0, kept = 0;
+  double saved_seconds = 0;
+};
+
+/// Samples come in order of time; a file under construction has no name before it is whole.
+class ExportSeries {
+ public:
+  /// bodies: of the run, one or all. run and outputs are kept by reference.
+  ExportSeries(const ExportFormat& format, const ExportSettings& settings, const ExportFrames& frames,
+               std::vector<std::size_t> bodies, ShotRun& run, Outputs& outputs);
+  ExportSeries(ExportSeries&&) noexcept;
+  ~ExportSeries();
+
+  const ExportFormat& format() const { return format_; }
+  bool has(std::size_t body) const;
+  int sample_count() const { return times_.count; }
+  /// False if the file that holds this sample is there, made of the same.
+  bool wants(int sample);
+  /// A wanted sample; sample.body counts in the run. seconds: what making it took.
+  void append(int sample, const ExportSample& data, double seconds);
+  /// After the last sample.
+  void finish();
+
+  /// "FIRST .. LAST", or the file.
+  std::string made_line() const;
+  const SeriesCounts& counts() const { return counts_; }
+
+ private:
+  /// A file that grows sample by sample.
+  struct Growing;
+
+  bool one_file() const { return format_.file_per != FilePer::Sample; }
+  std::string stem() const;
+  std::string path(int sample) const;
+  StageKey sample_key(int sample) const;
+  const StageKey& whole_key();
+  StageKey key(int sample) { return one_file() ? whole_key() : sample_key(sample); }
+  ExportTarget target(int sample) const;
+  void close();
+  void write_index();
+
+  const ExportFormat& format_;
+  ExportSettings settings_;
+  ExportFrames frames_;
+  SampleTimes times_;
+  std::vector<std::size_t> bodies_;
+  ShotRun& run_;
+  Outputs& outputs_;
+  std::function<Camera(double frame)> camera_;
+  StageKey whole_key_;             ///< empty until it is needed
+  std::optional<bool> wants_all_;  ///< of a single file
+  std::unique_ptr<Growing> growing_;
+  SeriesCounts counts_;
+};
+
+/// When an export's samples are taken.
+SampleTimes sample_times(const ExportSettings& settings, const ExportFrames& frames);
+
+}  // namespace softreel
