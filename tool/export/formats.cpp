@@ -9,11 +9,13 @@
 #include "tool/export/obj_export.h"
 #include "tool/export/pc2_export.h"
 #include "tool/export/ply_export.h"
+#include "tool/export/vdb_export.h"
+#include "tool/export/vtu_export.h"
 
 namespace softreel {
 
 const std::vector<ExportFormat>& export_formats() {
-  static const std::vector<ExportFormat> formats{obj_format(), ply_format(), pc2_format()};
+  static const std::vector<ExportFormat> formats{obj_format(), ply_format(), pc2_format(), vtu_format(), vdb_format()};
   return formats;
 }
 

@@ -37,7 +37,7 @@ double distance_at(const openvdb::FloatGrid& grid, const Vec3& p) {
 
 TEST(LevelSet, OfASphereHasItsDistancesWithinAVoxel) {
   const double voxel = 0.02;
-  const auto grid = read(encode(testing::sphere(4, kRadius, kCenter), voxel));
+  const auto grid = read(encode(test::make_sphere(kRadius, 32, kCenter), voxel));
   EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET);
   EXPECT_EQ(grid->getName(), "surface");
   EXPECT_NEAR(grid->voxelSize()[0], voxel, 1e-12);
@@ -49,20 +49,32 @@ TEST(LevelSet, OfASphereHasItsDistancesWithinAVoxel) {
 
 TEST(LevelSet, FarFromTheSurfaceIsTheBackgroundWithItsSign) {
   const double voxel = 0.02;
-  const auto grid = read(encode(testing::sphere(3, kRadius, kCenter), voxel));
+  const auto grid = read(encode(test::make_sphere(kRadius, 16, kCenter), voxel));
   EXPECT_NEAR(distance_at(*grid, kCenter), -3 * voxel, 1e-6) << "negative inside";
   EXPECT_NEAR(distance_at(*grid, Vec3(5, 5, 5)), 3 * voxel, 1e-6);
 }
 
+TEST(LevelSet, OfAHollowSphereIsOutsideInTheCavity) {
+  const double voxel = 0.02;
+  SurfaceMesh mesh = test::make_sphere(kRadius, 24, kCenter), cavity = test::make_sphere(0.2, 16, kCenter);
+  test::turn_inside_out(cavity);
+  test::append(mesh, cavity);
+  const auto grid = read(encode(mesh, voxel));
+  EXPECT_NEAR(distance_at(*grid, kCenter), 3 * voxel, 1e-6);
+  EXPECT_NEAR(distance_at(*grid, kCenter + Vec3(0.3, 0, 0)), -3 * voxel, 1e-6);
+  EXPECT_NEAR(distance_at(*grid, kCenter + Vec3(0, 0.22, 0)), -0.02, 0.2 * voxel);
+  EXPECT_NEAR(distance_at(*grid, kCenter + Vec3(0, 0.18, 0)), 0.02, 0.2 * voxel);
+}
+
 TEST(LevelSet, IsTheSameBytesForAnyNumberOfThreadsAndWhenWrittenAgain) {
-  const SurfaceMesh mesh = testing::sphere(4, kRadius, kCenter);
+  const SurfaceMesh mesh = test::make_sphere(kRadius, 32, kCenter);
   const std::vector<std::uint8_t> once = encode(mesh, 0.015, 1);
   EXPECT_EQ(once, encode(mesh, 0.015, 4));
   EXPECT_EQ(once, encode(mesh, 0.015, 1));
 }
 
 TEST(EstimateVoxels, IsNearTheCountThatOpenVdbMakes) {
-  const SurfaceMesh mesh = testing::sphere(4, kRadius, kCenter);
+  const SurfaceMesh mesh = test::make_sphere(kRadius, 32, kCenter);
   LevelSetParams params;
   params.voxel = 0.01;
   const double made = static_cast<double>(read(encode(mesh, params.voxel))->activeVoxelCount());
