@@ -68,7 +68,8 @@ class BodyExport {
       materials_ =
           element_materials(run_.resolved(body_), run_.settings(body_), run_.loaded(body_), run_.filled(body_)->mesh);
     const ScopedStage stage(run_.context().times, "export");
-    for (int k = 0; k <= between; ++k) write_sample(first_sample(frame) + k, k, skinned.times[k]);
+    for (int k = 0; k <= between; ++k)
+      write_sample(first_sample(frame) + k, k, skinned.times[static_cast<std::size_t>(k)]);
   }
 
  private:
@@ -87,7 +88,7 @@ class BodyExport {
     const std::vector<Vec3> normals = export_normals(settings_, loaded, time.normals);
     std::optional<TetSample> tets;
     if (!time.nodes.empty())
-      tets.emplace(*run_.filled(body_), materials_, time.nodes, run_.resolved(body_).solver.dilatation);
+      tets.emplace(TetSample{*run_.filled(body_), materials_, time.nodes, run_.resolved(body_).solver.dilatation});
     double shared = seconds_since(start);
     for (Taker& taker : series_) {
       if (!taker.wanted[static_cast<std::size_t>(place)]) continue;
@@ -109,10 +110,11 @@ class BodyExport {
 
 int run_export(const ExportOptions& options) {
   const std::vector<const ExportFormat*> formats = chosen_formats(options.wishes);
+  ExportSettings settings = export_settings(options.wishes, formats);
   if (options.shot.dry_run) return run_plan(options.shot);
   Session session(options.shot);
   const Shot& shot = session.shot();
-  const ExportSettings settings = export_settings(options.wishes, formats, shot.settings.fps);
+  if (!options.wishes.fps) settings.fps = shot.settings.fps;
   const ExportFrames frames{session.frames().first, session.frames().last};
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
   ShotRun run(shot, session.context());

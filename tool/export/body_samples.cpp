@@ -34,10 +34,14 @@ ExportBody export_body(const ExportSettings& settings, const ShotRun& run, std::
   ExportBody result;
   result.name = run.settings(body).name;
   result.mesh = &loaded.file_mesh;
-  result.appearance = appearance_at(run.shot().materials.at(run.settings(body).material), frame);
+  result.material = run.settings(body).material;
+  result.appearance = appearance_at(run.shot().materials.at(result.material), frame);
   const Placement world = world_placement(settings);
   const bool in_object_space = settings.space == ExportSpace::Object;
-  if (in_object_space) result.transform = composed(loaded.placement, world);
+  if (in_object_space)
+    result.transform = composed(loaded.placement, world);
+  else
+    result.file_to_space = composed(loaded.placement, world);
   result.scene_to_space = in_object_space ? inverted(loaded.placement) : world;
   return result;
 }

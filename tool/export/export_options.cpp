@@ -90,13 +90,12 @@ std::vector<const ExportFormat*> chosen_formats(const ExportWishes& wishes) {
   return formats;
 }
 
-ExportSettings export_settings(const ExportWishes& wishes, const std::vector<const ExportFormat*>& formats,
-                               double shot_fps) {
+ExportSettings export_settings(const ExportWishes& wishes, const std::vector<const ExportFormat*>& formats) {
   ExportSettings settings;
   settings.space = export_space(wishes.space);
   if (!wishes.unit.empty()) settings.meters_per_unit = meters_per_unit(wishes.unit);
   if (!wishes.up.empty()) settings.up = up_axis(wishes.up);
-  settings.fps = wishes.fps.value_or(shot_fps);
+  if (wishes.fps) settings.fps = *wishes.fps;
   settings.subframes = wishes.subframes;
   settings.normals = wishes.normals;
   settings.voxel = wishes.voxel.value_or(0);

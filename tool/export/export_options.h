@@ -22,8 +22,8 @@ struct ExportWishes {
 /// The formats of --format, in the order given; OBJ if none is. Throws input_error for one that is not known.
 std::vector<const ExportFormat*> chosen_formats(const ExportWishes& wishes);
 
-/// Throws input_error for a value that is none, and for an option that a format could only ignore, naming both.
-ExportSettings export_settings(const ExportWishes& wishes, const std::vector<const ExportFormat*>& formats,
-                               double shot_fps);
+/// Throws input_error for a value that is none, and for an option that a format could only ignore, naming both. Where
+/// no rate is asked for, the caller sets that of the shot.
+ExportSettings export_settings(const ExportWishes& wishes, const std::vector<const ExportFormat*>& formats);
 
 }  // namespace softreel

@@ -63,7 +63,9 @@ struct ExportSample {
 struct ExportBody {
   std::string name;
   const SurfaceMesh* mesh = nullptr;  ///< of the file, in its own unit; `triangles` are the repaired ones
-  Appearance appearance;              ///< of the body's material at the first sample
+  std::string material;               ///< its name
+  Appearance appearance;              ///< of it, at the first sample
+  Placement file_to_space;            ///< from mesh->positions to the coordinates of ExportSample::positions
   /// From the coordinates of ExportSample::positions to the export's world: the body's placement in object space, the
   /// identity in world space.
   Placement transform;

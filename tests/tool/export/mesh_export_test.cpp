@@ -1,13 +1,15 @@
 // OBJ and PLY, read back by our own readers: every bit of every position must return.
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <random>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
-#include "tests/core/mesh/mesh_files.h"
+#include "tests/tool/export/format_runs.h"
 #include "tool/export/obj_export.h"
 #include "tool/export/ply_export.h"
 
@@ -51,17 +53,8 @@ std::map<std::string, std::vector<Index>> groups_of(const SurfaceMesh& mesh) {
   return groups;
 }
 
-/// Quads, a pentagon and a triangle in two groups, a texture seam, an unused vertex.
-SurfaceMesh patchwork() {
-  return testing::import_text(
-      "a.obj",
-      "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 9 9 9\nv 1 2 0\nv 0 2 0.1\n"
-      "vt 0 0\nvt 0.1 0\nvt 0.1 1\nvt 0 1\nvt 0.7 0.3\n"
-      "g left\nf 1/1 2/2 5/3 4/4\ng right\nf 2/5 3/2 6/3 5/1\ng\nf 4/1 5/2 6/3 8/4 9/5\nf 4/1 2/3 1/2\n");
-}
-
 TEST(ObjExport, ReadsBackBitForBitWithPolygonsTexturesAndGroups) {
-  const SurfaceMesh mesh = patchwork();
+  const SurfaceMesh mesh = testing::patchwork();
   const std::vector<Vec3> positions = awkward_positions(mesh.positions.size());
   const SurfaceMesh back = read_back("b.obj", encode_obj(mesh, positions));
   expect_same_bits(back.positions, positions);
@@ -74,14 +67,56 @@ TEST(ObjExport, ReadsBackBitForBitWithPolygonsTexturesAndGroups) {
 }
 
 TEST(ObjExport, OfItsOwnResultHasTheSameBytes) {
-  const SurfaceMesh mesh = patchwork();
+  const SurfaceMesh mesh = testing::patchwork();
   const std::vector<std::uint8_t> bytes = encode_obj(mesh, mesh.positions);
   const SurfaceMesh back = read_back("b.obj", bytes);
   EXPECT_EQ(encode_obj(back, back.positions), bytes);
 }
 
+TEST(ObjExport, NormalsAreThoseOfTheVerticesThatCornersName) {
+  for (const bool textured : {true, false}) {
+    SurfaceMesh mesh = textured ? testing::patchwork() : testing::unit_box();
+    const std::vector<Vec3> normals = vertex_normals(mesh, mesh.positions);
+    const std::vector<std::uint8_t> bytes = encode_obj(mesh, mesh.positions, normals);
+    std::istringstream text(std::string(bytes.begin(), bytes.end()));
+    std::vector<Vec3> read;
+    std::size_t corners = 0;
+    for (std::string word, line; std::getline(text, line);) {
+      std::istringstream words(line);
+      words >> word;
+      if (word == "vn") {
+        Vec3& n = read.emplace_back();
+        words >> n.x() >> n.y() >> n.z();
+      }
+      if (word != "f") continue;
+      for (; words >> word; ++corners) {
+        EXPECT_EQ(std::count(word.begin(), word.end(), '/'), 2);
+        EXPECT_EQ(word.find("//") == std::string::npos, textured);
+        EXPECT_EQ(word.substr(0, word.find('/')), word.substr(word.rfind('/') + 1));
+      }
+    }
+    EXPECT_EQ(corners, mesh.polygons.corner_vertices.size());
+    expect_same_bits(read, normals);
+    EXPECT_EQ(read_back("b.obj", bytes).polygons.corner_textures, mesh.polygons.corner_textures);
+  }
+}
+
+TEST(PlyExport, NormalsStandBehindPositionsAndDisturbNothing) {
+  const SurfaceMesh mesh = testing::patchwork();
+  const std::vector<std::uint8_t> bytes = encode_ply(mesh, mesh.positions, vertex_normals(mesh, mesh.positions));
+  const std::string text(bytes.begin(), bytes.end());
+  EXPECT_NE(text.find("z\nproperty double nx\nproperty double ny\nproperty double nz\n"), std::string::npos);
+  const SurfaceMesh back = read_back("b.ply", bytes);
+  expect_same_bits(back.positions, mesh.positions);
+  EXPECT_EQ(groups_of(back), groups_of(mesh));
+  const std::size_t first = text.find("end_header\n") + 11;
+  Vec3 normal;
+  std::memcpy(normal.data(), bytes.data() + first + sizeof(Vec3), sizeof(Vec3));
+  EXPECT_EQ(normal, vertex_normals(mesh, mesh.positions)[0]);
+}
+
 TEST(PlyExport, ReadsBackBitForBitWithTexturesPerCorner) {
-  const SurfaceMesh mesh = patchwork();
+  const SurfaceMesh mesh = testing::patchwork();
   const std::vector<Vec3> positions = awkward_positions(mesh.positions.size());
   const SurfaceMesh back = read_back("b.ply", encode_ply(mesh, positions));
   expect_same_bits(back.positions, positions);

@@ -1,0 +1,243 @@
+// Exports through the built program: what the files of all formats say of one shot, what a second run keeps, and what
+// is refused.
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/base/types.h"
+#include "tests/support/program.h"
+#include "tests/tool/export/readers/glb_reader.h"
+#include "tests/tool/export/readers/point_cache_reader.h"
+#include "tests/tool/export/readers/usda_reader.h"
+
+namespace softreel::testing {
+namespace {
+
+/// Numbers behind a keyword ("v", "vn") of an OBJ file.
+std::vector<double> obj_values(const std::string& path, const std::string& keyword) {
+  std::istringstream text(read_text(path));
+  std::vector<double> numbers;
+  for (std::string line, word; std::getline(text, line);) {
+    std::istringstream words(line);
+    words >> word;
+    if (word != keyword) continue;
+    while (words >> word) numbers.push_back(std::stod(word));
+  }
+  return numbers;
+}
+
+std::vector<float> to_floats(const std::vector<double>& values) {
+  return {values.begin(), values.end()};
+}
+
+void expect_same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(a[i]), std::bit_cast<std::uint32_t>(b[i])) << "number " << i;
+}
+
+/// Files written and kept, as the report says.
+std::pair<int, int> written_and_kept(const Outcome& outcome) {
+  const auto report = nlohmann::json::parse(outcome.out);
+  return {report.at("files").at("written").get<int>(), report.at("files").at("kept").get<int>()};
+}
+
+/// A folder with a shot that is simulated once: exports of a case share its cache.
+class ExportProgram : public ::testing::Test {
+ protected:
+  Outcome export_shot(const std::string& options) const {
+    return run(fmt::format("softreel export {0}/shot.toml --output {0}/out --json --quiet {1}", folder_, options));
+  }
+  void require_export(const std::string& options) const {
+    const Outcome outcome = export_shot(options);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  std::string file(const std::string& name) const { return folder_ + "/out/" + name; }
+  std::string bytes(const std::string& name) const { return read_text(file(name)); }
+
+  const std::string folder_ = shot_folder("exports");
+};
+
+TEST_F(ExportProgram, AllFormatsOfOneRunSayTheSamePositionsInFileOrder) {
+  require_export("--format obj,pc2,mdd --format glb,usda");
+  const PointCache pc2 = read_pc2(bytes("ball.ball.pc2")), mdd = read_mdd(bytes("ball.ball.mdd"));
+  const GlbScene glb = read_glb(bytes("ball.ball.glb"));
+  const auto usda = read_usda(bytes("ball.usda"));
+  ASSERT_EQ(pc2.samples.size(), 4U);
+  ASSERT_EQ(mdd.samples.size(), 4U);
+  ASSERT_EQ(glb.times.size(), 4U);
+  for (std::size_t s = 0; s < 4; ++s) {
+    const std::vector<float> exact = to_floats(obj_values(file(fmt::format("ball.ball.000{}.obj", s + 1)), "v"));
+    expect_same_bits(pc2.samples[s], exact);
+    expect_same_bits(mdd.samples[s], exact);
+    expect_same_bits(usda->child("ball/ball").property("points").samples.at(1.0 + static_cast<double>(s)).floats(),
+                     exact);
+    EXPECT_EQ(mdd.times[s], static_cast<float>((1.0 + static_cast<double>(s)) / 24));
+    EXPECT_EQ(glb.times[s], mdd.times[s]);
+    const std::vector<float> shown = glb.positions_at(glb.times[s]);
+    ASSERT_EQ(shown.size(), exact.size()) << "a mesh without texture coordinates needs no duplicates";
+    for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(shown[i], exact[i], 1.2e-7);
+  }
+  expect_same_bits(glb.positions, to_floats(obj_values(folder_ + "/sphere.obj", "v")));
+}
+
+TEST_F(ExportProgram, ObjectSpaceWithItsPlacementIsWorldSpace) {
+  const std::string placed =
+      "--set body.ball.rotate_deg=[10,20,30] --set body.ball.translate=[0,0.5,-1] --set body.fit=2 ";
+  require_export(placed + "--format usda,glb");
+  const auto object = read_usda(bytes("ball.usda"));
+  const GlbScene glb = read_glb(bytes("ball.ball.glb"));
+  require_export(placed + "--format obj --space world");
+  const std::vector<double> world = obj_values(file("ball.ball.0003.obj"), "v");
+  const UsdPrim& mesh = object->child("ball/ball");
+  const std::vector<double> rows = mesh.property("xformOp:transform").value.doubles();
+  const std::vector<double> points = mesh.property("points").samples.at(3).doubles();
+  ASSERT_EQ(points.size(), world.size());
+  const std::vector<float> shown = glb.positions_at(glb.times[2]);
+  const Quaternion turn(glb.rotation[3], glb.rotation[0], glb.rotation[1], glb.rotation[2]);
+  for (std::size_t i = 0; i < points.size(); i += 3) {
+    const Vec3 expected(world[i], world[i + 1], world[i + 2]);
+    Vec3 by_usda;
+    for (std::size_t k = 0; k < 3; ++k)
+      by_usda[static_cast<Index>(k)] =
+          points[i] * rows[k] + points[i + 1] * rows[4 + k] + points[i + 2] * rows[8 + k] + rows[12 + k];
+    EXPECT_NEAR((by_usda - expected).norm(), 0, 1e-6);
+    const Vec3 local = glb.scale[0] * Vec3(shown[i], shown[i + 1], shown[i + 2]);
+    const Vec3 by_glb = turn * local + Vec3(glb.translation[0], glb.translation[1], glb.translation[2]);
+    EXPECT_NEAR((by_glb - expected).norm(), 0, 1e-6);
+  }
+}
+
+TEST_F(ExportProgram, UnitsAndAxesOfTheWorldAreThoseAskedFor) {
+  require_export("--format obj --space world");
+  const std::vector<double> meters = obj_values(file("ball.ball.0004.obj"), "v");
+  require_export("--format obj --space world --unit in --up z");
+  const std::vector<double> turned = obj_values(file("ball.ball.0004.obj"), "v");
+  ASSERT_EQ(turned.size(), meters.size());
+  for (std::size_t i = 0; i < meters.size(); i += 3) {
+    EXPECT_NEAR(0.0254 * turned[i], meters[i], 1e-12);
+    EXPECT_NEAR(0.0254 * turned[i + 1], -meters[i + 2], 1e-12);
+    EXPECT_NEAR(0.0254 * turned[i + 2], meters[i + 1], 1e-12);
+  }
+  require_export("--format usda --unit cm");
+  EXPECT_EQ(read_usda(bytes("ball.usda"))->metadata.at("metersPerUnit").number, 0.01);
+}
+
+TEST_F(ExportProgram, NormalsHaveUnitLengthAndPointOutwardsInEveryFormatThatHoldsThem) {
+  require_export("--format obj,glb,usda --normals");
+  const std::vector<double> positions = obj_values(file("ball.ball.0003.obj"), "v"),
+                            normals = obj_values(file("ball.ball.0003.obj"), "vn");
+  ASSERT_EQ(normals.size(), positions.size());
+  const auto usda = read_usda(bytes("ball.usda"));
+  expect_same_bits(usda->child("ball/ball").property("normals").samples.at(3).floats(), to_floats(normals));
+  const GlbScene glb = read_glb(bytes("ball.ball.glb"));
+  const std::vector<float> shown = glb.normals_at(glb.times[2]);
+  ASSERT_EQ(shown.size(), normals.size());
+  for (std::size_t i = 0; i < normals.size(); i += 3) {
+    const Vec3 n(normals[i], normals[i + 1], normals[i + 2]);
+    EXPECT_NEAR(n.norm(), 1, 1e-12);
+    EXPECT_GT(n.dot(Vec3(positions[i], positions[i + 1] - 0.5, positions[i + 2])), 0) << "the ball's middle";
+    EXPECT_NEAR((Vec3(shown[i], shown[i + 1], shown[i + 2]) - n).norm(), 0, 1e-6);
+  }
+}
+
+TEST_F(ExportProgram, SubFramesLieBetweenFramesThatStayAsTheyAre) {
+  require_export("--format pc2 --set solver.substeps=4");
+  const PointCache frames = read_pc2(bytes("ball.ball.pc2"));
+  require_export("--format pc2,mdd,usda --subframes 3 --set solver.substeps=4");
+  const PointCache fine = read_pc2(bytes("ball.ball.pc2")), mdd = read_mdd(bytes("ball.ball.mdd"));
+  const auto usda = read_usda(bytes("ball.usda"));
+  EXPECT_EQ(fine.frames_apart, 0.25F);
+  ASSERT_EQ(fine.samples.size(), 13U);
+  for (std::size_t f = 0; f < 4; ++f) expect_same_bits(fine.samples[4 * f], frames.samples[f]);
+  double off_line = 0, step = 0;
+  for (std::size_t s = 0; s < 13; ++s) {
+    const double frame = 1 + 0.25 * static_cast<double>(s);
+    EXPECT_EQ(mdd.times[s], static_cast<float>(frame / 24));
+    expect_same_bits(mdd.samples[s], fine.samples[s]);
+    expect_same_bits(usda->child("ball/ball").property("points").samples.at(frame).floats(), fine.samples[s]);
+    if (s % 4 == 0) continue;
+    const float share = 0.25F * static_cast<float>(s % 4);
+    for (std::size_t i = 0; i < fine.samples[s].size(); ++i) {
+      const float a = frames.samples[s / 4][i], b = frames.samples[s / 4 + 1][i];
+      off_line = std::max<double>(off_line, std::abs(fine.samples[s][i] - ((1 - share) * a + share * b)));
+      step = std::max<double>(step, std::abs(b - a));
+    }
+  }
+  EXPECT_GT(off_line, 1e-4 * step) << "sub-frames are the solver's steps, not a blend of frames";
+  EXPECT_LT(off_line, step);
+}
+
+TEST_F(ExportProgram, FilesOfSubFramesAreNamedSoThatTheySortByTime) {
+  require_export("--format ply --frames 2-3 --subframes 1");
+  for (const char* name : {"0002.000", "0002.500", "0003.000"})
+    EXPECT_TRUE(exists(file(fmt::format("ball.ball.{}.ply", name)))) << name;
+  EXPECT_FALSE(exists(file("ball.ball.0002.ply")));
+}
+
+TEST_F(ExportProgram, KeepsWhatIsDoneAndMakesWhatIsMissingOrOfOtherOptions) {
+  const std::string all = "--format obj,pc2,glb,usda";
+  EXPECT_EQ(written_and_kept(export_shot(all)), std::pair(7, 0));
+  const std::string glb = bytes("ball.ball.glb"), usda = bytes("ball.usda");
+  EXPECT_EQ(written_and_kept(export_shot(all)), std::pair(0, 7));
+  std::filesystem::remove(file("ball.ball.0002.obj"));
+  std::filesystem::remove(file("ball.ball.glb"));
+  write_text(file("ball.usda"), usda.substr(0, usda.size() / 2));
+  EXPECT_EQ(written_and_kept(export_shot(all)), std::pair(3, 4));
+  EXPECT_TRUE(bytes("ball.ball.glb") == glb) << "another run, other bytes";
+  EXPECT_TRUE(bytes("ball.usda") == usda) << "another run, other bytes";
+  EXPECT_EQ(written_and_kept(export_shot("--format glb,usda --fps 30")), std::pair(2, 0));
+  EXPECT_EQ(written_and_kept(export_shot("--format obj --normals")), std::pair(4, 0));
+  EXPECT_EQ(written_and_kept(export_shot("--format usda --fps 30 --set camera.azimuth_deg=80")), std::pair(1, 0))
+      << "the camera is in the file";
+  EXPECT_EQ(written_and_kept(export_shot("--format glb --fps 30 --set camera.azimuth_deg=80")), std::pair(0, 1))
+      << "and not in this one";
+  EXPECT_EQ(written_and_kept(export_shot("--format glb --fps 30 --set material.soft.base_color=[1,0,0]")),
+            std::pair(1, 0));
+}
+
+TEST_F(ExportProgram, ARangeOfFramesKeepsItsPlaceInTime) {
+  require_export("--format pc2,mdd,glb,usda --frames 3-4");
+  EXPECT_EQ(read_pc2(bytes("ball.ball.pc2")).start_frame, 3.0F);
+  EXPECT_EQ(read_mdd(bytes("ball.ball.mdd")).times[0], 3.0F / 24);
+  EXPECT_EQ(read_glb(bytes("ball.ball.glb")).times[0], 3.0F / 24);
+  EXPECT_EQ(read_usda(bytes("ball.usda"))->metadata.at("startTimeCode").number, 3);
+}
+
+TEST_F(ExportProgram, RefusesBeforeItWorksWhatAFormatCouldOnlyIgnore) {
+  struct Refusal {
+    std::string options;
+    std::vector<std::string> words;
+  };
+  const std::vector<Refusal> refusals{
+      {"--format pc2 --normals", {"--normals", "pc2 holds no normals"}},
+      {"--format obj,glb --unit cm", {"--unit", "obj", "--space world"}},
+      {"--format glb --space world --unit cm", {"--unit", "glb is in metres"}},
+      {"--format obj --fps 25", {"--fps", "obj"}},
+      {"--format usda --fps 0", {"--fps", "above 0"}},
+      {"--format usda --subframes 100", {"--subframes"}},
+      {"--format obj,gbl", {"gbl", "Did you mean glb?"}},
+  };
+  for (const Refusal& refusal : refusals) {
+    const Outcome outcome = export_shot(refusal.options);
+    EXPECT_EQ(outcome.status, 2) << refusal.options << outcome.err;
+    for (const std::string& word : refusal.words)
+      EXPECT_NE(outcome.err.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.err;
+  }
+  EXPECT_FALSE(exists(folder_ + "/out/.cache/simulation")) << "a frame was simulated for nothing";
+}
+
+TEST(ExportHelp, NamesEveryFormatWithItsLine) {
+  const Outcome help = run("softreel export --help");
+  for (const char* line : {"obj: Wavefront", "ply: binary", "pc2: PC2", "mdd: MDD", "glb: binary glTF", "usda: USD"})
+    EXPECT_NE(help.out.find(line), std::string::npos) << line;
+}
+
+}  // namespace
+}  // namespace softreel::testing

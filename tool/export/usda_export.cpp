@@ -1,0 +1,207 @@
+#include "tool/export/usda_export.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "core/base/check.h"
+#include "render/scene/camera_frame.h"
+#include "tool/export/body_samples.h"
+#include "tool/export/float_values.h"
+#include "tool/export/scratch_file.h"
+#include "tool/export/usda_text.h"
+
+namespace softreel {
+namespace {
+
+/// What of a body changes with time, each as "TIME: VALUE" lines.
+struct BodyTexts {
+  explicit BodyTexts(const std::string& folder) : points(folder), extents(folder), normals(folder) {}
+
+  ScratchFile points, extents, normals;
+  int samples = 0;
+};
+
+/// "[(lowest), (highest)]"
+std::string extent_text(const std::vector<float>& points) {
+  std::vector<float> corners{points.begin(), points.begin() + 3};
+  corners.insert(corners.end(), points.begin(), points.begin() + 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    corners[i % 3] = std::min(corners[i % 3], points[i]);
+    corners[3 + i % 3] = std::max(corners[3 + i % 3], points[i]);
+  }
+  return usda_vectors(corners, 3);
+}
+
+class UsdaFile : public ExportWriter {
+ public:
+  explicit UsdaFile(ExportTarget target) : target_(std::move(target)) {
+    for (std::size_t b = 0; b < target_.bodies.size(); ++b)
+      texts_.push_back(std::make_unique<BodyTexts>(target_.folder));
+  }
+
+  void append(const ExportSample& sample) override {
+    const ExportBody& body = target_.bodies[sample.body];
+    BodyTexts& texts = *texts_[sample.body];
+    CHECK(sample.positions.size() == body.mesh->positions.size());
+    const std::string where = fmt::format("{}.usda, body {}, frame {}", target_.shot, body.name, sample.frame);
+    write_sample(texts.points, sample.frame, where, sample.positions);
+    write_line(texts.extents, sample.frame, extent_text(values_));
+    if (target_.settings.normals) write_sample(texts.normals, sample.frame, where, sample.normals);
+    ++texts.samples;
+  }
+
+  void finish() override {
+    write_head();
+    UsdaNames names, looks;
+    names.unique("camera");
+    names.unique("Looks");
+    std::string materials;
+    for (std::size_t b = 0; b < target_.bodies.size(); ++b) {
+      CHECK(texts_[b]->samples == target_.times.count);
+      const std::string look = looks.unique(target_.bodies[b].name);
+      write_body(target_.bodies[b], *texts_[b], names.unique(target_.bodies[b].name), look);
+      materials += material_text(target_.bodies[b], look);
+    }
+    write_camera();
+    write("\n    def Scope \"Looks\"\n    {{\n{}    }}\n}}\n", materials);
+  }
+
+ private:
+  template <typename... Values>
+  void write(const char* form, const Values&... values) {
+    const std::string text = fmt::format(fmt::runtime(form), values...);
+    target_.sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  }
+
+  static void write_line(ScratchFile& file, double frame, const std::string& value) {
+    file.write(fmt::format("            {}: {},\n", frame, value));
+  }
+
+  /// values_ holds the sample afterwards.
+  void write_sample(ScratchFile& file, double frame, const std::string& where, std::span<const Vec3> values) {
+    values_.clear();
+    append_floats(where, values, values_);
+    write_line(file, frame, usda_vectors(values_, 3));
+  }
+
+  std::string root_name() const { return UsdaNames().unique(target_.shot); }
+
+  void write_head() {
+    const ExportSettings& settings = target_.settings;
+    write(
+        "#usda 1.0\n(\n    defaultPrim = \"{}\"\n    endTimeCode = {}\n    framesPerSecond = {}\n"
+        "    metersPerUnit = {}\n    startTimeCode = {}\n    timeCodesPerSecond = {}\n    upAxis = \"{}\"\n)\n\n",
+        root_name(), target_.times.frame(target_.times.count - 1), settings.fps, settings.meters_per_unit,
+        target_.times.first, settings.fps, settings.up == UpAxis::Z ? 'Z' : 'Y');
+    write("def Xform \"{}\" (\n    kind = \"component\"\n)\n{{\n", root_name());
+  }
+
+  void write_samples(const char* attribute, const ScratchFile& samples) {
+    write("        {}.timeSamples = {{\n", attribute);
+    samples.copy_to(target_.sink);
+    write("        }}\n");
+  }
+
+  void write_body(const ExportBody& body, const BodyTexts& texts, const std::string& name, const std::string& look) {
+    write("    def Mesh \"{}\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n    {{\n", name);
+    write_samples("float3[] extent", texts.extents);
+    const std::string topology = usda_topology(*body.mesh, "        ");
+    target_.sink({reinterpret_cast<const std::uint8_t*>(topology.data()), topology.size()});
+    write("        rel material:binding = </{}/Looks/{}>\n", root_name(), look);
+    if (target_.settings.normals) write_samples("normal3f[] normals", texts.normals);
+    write_samples("point3f[] points", texts.points);
+    write("        custom string softreel:name = {}\n", usda_quoted(body.name));
+    if (target_.settings.space == ExportSpace::Object)
+      write("        matrix4d xformOp:transform = {}\n        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n",
+            usda_matrix(body.transform));
+    const std::string groups = usda_groups(*body.mesh, "        ");
+    target_.sink({reinterpret_cast<const std::uint8_t*>(groups.data()), groups.size()});
+    write("    }}\n\n");
+  }
+
+  std::string material_text(const ExportBody& body, const std::string& name) const {
+    const Appearance& a = body.appearance;
+    return fmt::format(
+        "        def Material \"{0}\"\n        {{\n"
+        "            token outputs:surface.connect = </{1}/Looks/{0}/surface.outputs:surface>\n"
+        "            custom string softreel:name = {2}\n\n"
+        "            def Shader \"surface\"\n            {{\n"
+        "                uniform token info:id = \"UsdPreviewSurface\"\n"
+        "                color3f inputs:diffuseColor = ({3}, {4}, {5})\n                float inputs:metallic = {6}\n"
+        "                float inputs:roughness = {7}\n                token outputs:surface\n            }}\n        "
+        "}}\n",
+        name, root_name(), usda_quoted(body.material), a.base_color.x(), a.base_color.y(), a.base_color.z(), a.metallic,
+        a.roughness);
+  }
+
+  /// An attribute of the camera at all samples; `text` makes the value of one.
+  template <typename Text>
+  void write_keyed(const char* attribute, const Text& text) {
+    write("        {}.timeSamples = {{\n", attribute);
+    for (int k = 0; k < target_.times.count; ++k) {
+      const double frame = target_.times.frame(k);
+      write("            {}: {},\n", frame, text(target_.camera(frame)));
+    }
+    write("        }}\n");
+  }
+
+  /// USD's camera looks along -z with y up, as the frame's axes do turned round.
+  void write_camera() {
+    const Placement world = world_placement(target_.settings);
+    const double tenths = 0.01 / target_.settings.meters_per_unit;  // of a unit in a millimetre
+    const Camera first = target_.camera(target_.times.first);
+    const double width = tenths * first.sensor_width_mm;
+    write("    def Camera \"camera\"\n    {{\n        float2 clippingRange = ({}, {})\n",
+          static_cast<float>(0.01 / target_.settings.meters_per_unit),
+          static_cast<float>(1e4 / target_.settings.meters_per_unit));
+    write_keyed("float focalLength",
+                [&](const Camera& camera) { return static_cast<float>(tenths * camera.focal_length_mm); });
+    write_keyed("float focusDistance", [&](const Camera& camera) {
+      const double distance =
+          camera.focus_distance > 0 ? camera.focus_distance : (camera.target - camera.position).norm();
+      return static_cast<float>(distance / target_.settings.meters_per_unit);
+    });
+    write(
+        "        float fStop = {}\n        float horizontalAperture = {}\n        float verticalAperture = {}\n"
+        "        token projection = \"perspective\"\n",
+        first.f_number, static_cast<float>(width), static_cast<float>(width / target_.aspect));
+    write_keyed("matrix4d xformOp:transform", [&](const Camera& camera) { return usda_matrix(placed(camera, world)); });
+    write("        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n    }}\n");
+  }
+
+  /// From the camera's own axes (right, up, backwards) to the export's world. The axes keep their length of 1.
+  static Placement placed(const Camera& camera, const Placement& world) {
+    const CameraFrame frame = camera_frame(camera, 1, 1);
+    Mat3 axes;
+    axes.col(0) = frame.right.cast<double>();
+    axes.col(1) = frame.up.cast<double>();
+    axes.col(2) = -frame.forward.cast<double>();
+    const Mat3 turn = world.linear / std::cbrt(world.linear.determinant());
+    return {turn * axes, world(frame.position.cast<double>())};
+  }
+
+  ExportTarget target_;
+  std::vector<std::unique_ptr<BodyTexts>> texts_;
+  std::vector<float> values_;
+};
+
+}  // namespace
+
+ExportFormat usda_format() {
+  ExportFormat format;
+  format.name = "usda";
+  format.about = "USD text, a file of the whole shot: meshes with time samples, materials, camera; float32";
+  format.file_per = FilePer::Shot;
+  format.has_normals = true;
+  format.has_seconds = true;
+  format.has_transform = true;
+  format.needs_look = true;
+  format.needs_camera = true;
+  format.make = [](ExportTarget target) { return std::make_unique<UsdaFile>(std::move(target)); };
+  return format;
+}
+
+}  // namespace softreel
