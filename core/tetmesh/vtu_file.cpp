@@ -79,7 +79,8 @@ std::span<const std::uint8_t> bytes_of(const std::vector<T>& values) {
 std::vector<std::uint8_t> encode_vtu(const std::vector<Vec3>& points, const std::vector<Tet>& tets,
                                      const std::vector<VtuArray>& point_arrays,
                                      const std::vector<VtuArray>& cell_arrays) {
-  static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Tet) == 4 * sizeof(Index), "written as they lie in memory");
+  static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Tet) == 4 * sizeof(Index),
+                "written as they lie in memory");
   std::vector<std::int64_t> ends(tets.size());
   for (std::size_t e = 0; e < tets.size(); ++e) ends[e] = static_cast<std::int64_t>(4 * (e + 1));
   const std::vector<std::uint8_t> types(tets.size(), kVtkTetra);

@@ -1,4 +1,4 @@
-/// VTK unstructured grids of tetrahedra (.vtu): XML with raw binary appended, and arrays of numbers on nodes and elements.
+/// VTK unstructured grids of tetrahedra (.vtu): XML with raw binary appended, and arrays of numbers on nodes and cells.
 #pragma once
 
 #include <cstdint>

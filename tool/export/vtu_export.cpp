@@ -55,8 +55,7 @@ class VtuWriter : public ExportWriter {
 /// As a value of an attribute in XML.
 std::string escaped(const std::string& text) {
   std::string result;
-  for (const char c : text)
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  for (const char c : text) result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
   return result;
 }
 
@@ -64,7 +63,8 @@ std::string escaped(const std::string& text) {
 
 std::string pvd_text(std::span<const SeriesEntry> series) {
   std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\">\n<Collection>\n";
   for (const SeriesEntry& entry : series)
     text += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.seconds, escaped(entry.name));
   return text + "</Collection>\n</VTKFile>\n";
