@@ -251,7 +251,7 @@ class GlbFile : public ExportWriter {
   void write_chunks(std::string header) {
     header.append((4 - header.size() % 4) % 4, ' ');
     const std::uint64_t binary = buffer_.bytes().size();
-    CHECK(binary % 4 == 0);
+    CHECK(binary % 4 == 0U);
     const std::uint64_t length = 12 + 8 + header.size() + 8 + binary;
     CHECK(length <= std::numeric_limits<std::uint32_t>::max());
     const auto size = [](std::uint64_t value) { return static_cast<std::uint32_t>(value); };

@@ -40,7 +40,7 @@ void write_polygons(const SurfaceMesh& mesh, bool has_normals, Bytes& bytes) {
 std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, std::span<const Vec3> positions,
                                      std::span<const Vec3> normals) {
   CHECK(positions.size() == mesh.positions.size());
-  CHECK(normals.empty() || normals.size() == positions.size());
+  CHECK((normals.empty() || normals.size() == positions.size()));
   Bytes bytes;
   bytes.reserve(64 * (positions.size() + normals.size()) + 16 * mesh.polygons.corner_vertices.size());
   const auto out = std::back_inserter(bytes);

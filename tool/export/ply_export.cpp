@@ -126,7 +126,7 @@ class PlyEncoder {
 std::vector<std::uint8_t> encode_ply(const SurfaceMesh& mesh, std::span<const Vec3> positions,
                                      std::span<const Vec3> normals) {
   CHECK(positions.size() == mesh.positions.size());
-  CHECK(normals.empty() || normals.size() == positions.size());
+  CHECK((normals.empty() || normals.size() == positions.size()));
   return PlyEncoder(mesh, positions, normals).encode();
 }
 
