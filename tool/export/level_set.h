@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,11 +19,13 @@ struct LevelSetParams {
   std::string grid_name = "surface";
 };
 
-/// A surface to fill. Triangles in any order and orientation: OpenVDB finds the outside by flooding from the box, so
-/// the surface has to be closed, and shells inside of others do not count.
+/// A closed surface. Borrows all.
 struct LevelSetSurface {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
+  /// Tells the sides of the surface apart, from any thread. None: OpenVDB floods the outside from the box, whatever the
+  /// orientation of the triangles; shells inside of others then do not count.
+  std::function<bool(const Vec3& point)> is_inside = {};
 };
 
 /// Voxels that the narrow band will have, about: for refusing sizes that no machine can hold.

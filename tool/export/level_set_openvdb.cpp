@@ -5,6 +5,8 @@
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <openvdb/tools/ValueTransformer.h>
 
 #include "core/base/error.h"
 #include "tool/export/level_set.h"
@@ -29,6 +31,22 @@ class VoxelSurface {
   const LevelSetSurface& surface_;
   double voxels_per_unit_;
 };
+
+openvdb::FloatGrid::Ptr make_grid(const LevelSetSurface& surface, const LevelSetParams& params) {
+  const auto transform = openvdb::math::Transform::createLinearTransform(params.voxel);
+  const auto half_width = static_cast<float>(params.half_width);
+  const VoxelSurface voxels(surface, params.voxel);
+  if (!surface.is_inside)
+    return openvdb::tools::meshToVolume<openvdb::FloatGrid>(voxels, *transform, half_width, half_width);
+  const auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(voxels, *transform, half_width, half_width,
+                                                                     openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+  openvdb::tools::foreach (grid->beginValueOn(), [&](const openvdb::FloatGrid::ValueOnIter& value) {
+    const openvdb::Vec3d p = transform->indexToWorld(value.getCoord());
+    if (surface.is_inside(Vec3(p.x(), p.y(), p.z()))) value.setValue(-*value);
+  });
+  openvdb::tools::signedFloodFill(grid->tree());
+  return grid;
+}
 
 /// OpenVDB writes files that readers can seek in to a path only; this writes the same bytes to a stream.
 class SeekableArchive : public openvdb::io::Archive {
@@ -74,10 +92,7 @@ void softreel_encode_level_set(const LevelSetSurface& surface, const LevelSetPar
                                std::vector<std::uint8_t>& bytes) {
   try {
     openvdb::initialize();
-    const auto transform = openvdb::math::Transform::createLinearTransform(params.voxel);
-    const auto half_width = static_cast<float>(params.half_width);
-    const openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        VoxelSurface(surface, params.voxel), *transform, half_width, half_width);
+    const openvdb::FloatGrid::Ptr grid = make_grid(surface, params);
     grid->setName(params.grid_name);
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
     bytes = write(grid);

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "core/base/check.h"
 #include "core/base/error.h"
 #include "core/mesh/mesh_check.h"
+#include "core/mesh/mesh_topology.h"
+#include "core/tetmesh/winding_number.h"
 #include "tool/export/level_set.h"
 
 namespace softreel {
@@ -24,6 +28,21 @@ void require_closed(const ExportBody& body) {
       body.name, facts.holes, facts.boundary_edges));
 }
 
+/// True if a shell of the surface points inwards, as the wall of a cavity does once the mesh was repaired.
+bool has_cavity(const SurfaceMesh& mesh) {
+  const std::vector<Triangle> welded = welded_triangles(mesh);
+  DisjointSets shells(mesh.positions.size());
+  for (const Triangle& t : welded) {
+    shells.join(t[0], t[1]);
+    shells.join(t[0], t[2]);
+  }
+  std::map<Index, double> volumes;
+  const Vec3 center = used_bounds(mesh).center();
+  const auto at = [&](Index v) -> Vec3 { return mesh.positions[static_cast<std::size_t>(v)] - center; };
+  for (const Triangle& t : welded) volumes[shells.root(t[0])] += signed_volume6(at(t[0]), at(t[1]), at(t[2]));
+  return std::any_of(volumes.begin(), volumes.end(), [](const auto& shell) { return shell.second < 0; });
+}
+
 class VdbWriter : public ExportWriter {
  public:
   explicit VdbWriter(ExportTarget target) : target_(std::move(target)) {
@@ -34,7 +53,12 @@ class VdbWriter : public ExportWriter {
   void append(const ExportSample& sample) override {
     CHECK(sample.tets != nullptr);
     const ExportBody& body = target_.bodies[sample.body];
-    const LevelSetSurface surface{sample.positions, body.mesh->triangles};
+    LevelSetSurface surface{sample.positions, body.mesh->triangles};
+    std::optional<WindingNumber> winding;
+    if (has_cavity(*body.mesh)) {
+      winding.emplace(std::vector<Vec3>(sample.positions.begin(), sample.positions.end()), body.mesh->triangles);
+      surface.is_inside = [&winding](const Vec3& point) { return (*winding)(point) > 0.5; };
+    }
     LevelSetParams params;
     params.voxel = target_.settings.voxel > 0 ? target_.settings.voxel : own_voxel(body, *sample.tets);
     const double voxels = estimate_voxels(surface, params);
