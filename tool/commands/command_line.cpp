@@ -142,21 +142,28 @@ void add_export_command(CLI::App& app, Parsed& parsed, Runner& run) {
   exporting->add_option("--format", wishes.formats, formats)
       ->option_text("LIST")
       ->delimiter(',')
-      ->expected(1)
+      ->allow_extra_args(false)
       ->take_all()
       ->group("Files");
-  exporting->add_option("--space", wishes.space, "object (the file's own) | world [object]")->group("Files");
+  exporting->add_option("--space", wishes.space, "object (the file's own) | world [object]")
+      ->option_text("SPACE")
+      ->group("Files");
   exporting
       ->add_option("--unit", wishes.unit,
                    "unit of the exported world: m | cm | mm | in | ft, or the metres of one unit [m]")
+      ->option_text("UNIT")
       ->group("Files");
-  exporting->add_option("--up", wishes.up, "axis of the exported world that points up: y | z [y]")->group("Files");
+  exporting->add_option("--up", wishes.up, "axis of the exported world that points up: y | z [y]")
+      ->option_text("AXIS")
+      ->group("Files");
   exporting->add_option("--fps", wishes.fps, "frames a second at which it plays, above 0 [shot.fps]")
+      ->option_text("RATE")
       ->check(length("rate"))
       ->group("Files");
   exporting
       ->add_option("--subframes", wishes.subframes,
                    "samples between two frames, 0 to 99, on straight lines between the steps of the simulation [0]")
+      ->option_text("N")
       ->check(CLI::Range(0, 99))
       ->group("Files");
   exporting->add_flag("--normals", wishes.normals, "normals of the vertices too")->group("Files");

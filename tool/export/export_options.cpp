@@ -42,11 +42,12 @@ ExportSpace export_space(const std::string& text) {
   throw input_error(fmt::format("--space: \"{}\" is not known.\n  Accepted: object (the file's own), world.", text));
 }
 
-/// "obj, ply": the formats for which `can` holds.
-std::string names_of(bool ExportFormat::*can) {
+/// "obj, ply": the formats for which all of `can` hold.
+template <typename... Can>
+std::string names_of(Can... can) {
   std::vector<std::string> names;
   for (const ExportFormat& format : export_formats())
-    if (format.*can) names.push_back(format.name);
+    if (((format.*can) && ...)) names.push_back(format.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -61,7 +62,7 @@ void require_world(const char* option, const ExportFormat& format, ExportSpace s
     throw input_error(
         fmt::format("{}: in object space, {} has the unit and axes of the mesh file.\n  Accepted: with --space world, "
                     "or with {}. Add --space world, or leave it out.",
-                    option, format.name, names_of(&ExportFormat::has_transform)));
+                    option, format.name, names_of(&ExportFormat::has_transform, &ExportFormat::has_units)));
 }
 
 void require_sayable(const ExportWishes& wishes, const ExportFormat& format, ExportSpace space) {

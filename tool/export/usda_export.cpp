@@ -137,14 +137,19 @@ class UsdaFile : public ExportWriter {
         a.roughness);
   }
 
-  /// An attribute of the camera at all samples; `text` makes the value of one.
+  /// An attribute of the camera: a value where it stays, else one at each sample. `text` makes that of one.
   template <typename Text>
   void write_keyed(const char* attribute, const Text& text) {
-    write("        {}.timeSamples = {{\n", attribute);
-    for (int k = 0; k < target_.times.count; ++k) {
-      const double frame = target_.times.frame(k);
-      write("            {}: {},\n", frame, text(target_.camera(frame)));
+    const auto value = [&](int sample) { return fmt::format("{}", text(target_.camera(target_.times.frame(sample)))); };
+    const std::string first = value(0);
+    int same = 1;
+    while (same < target_.times.count && value(same) == first) ++same;
+    if (same == target_.times.count) {
+      write("        {} = {}\n", attribute, first);
+      return;
     }
+    write("        {}.timeSamples = {{\n", attribute);
+    for (int k = 0; k < target_.times.count; ++k) write("            {}: {},\n", target_.times.frame(k), value(k));
     write("        }}\n");
   }
 

@@ -23,8 +23,8 @@ class DiskFull : public ::testing::Test {
   void SetUp() override { folder_ = shot_folder("disk"); }
 
   std::string arguments(const std::string& output, const std::string& cache, const std::string& more) const {
-    return fmt::format("render {}/shot.toml --output {} --cache {} --quiet {} {}", folder_, output, cache, kFrames,
-                       more);
+    return fmt::format("{} {}/shot.toml --output {} --cache {} --quiet {} {}", command_, folder_, output, cache,
+                       kFrames, more);
   }
 
   /// Renders a reference and returns the bytes it wrote, those of the encoder too.
@@ -71,7 +71,7 @@ class DiskFull : public ::testing::Test {
     }
   }
 
-  std::string folder_, reference_;
+  std::string folder_, reference_, command_ = "render";
 };
 
 TEST_F(DiskFull, IsSaidOnceAndLeavesNoWrongFile) {
@@ -92,6 +92,16 @@ TEST_F(DiskFull, WhileTheMovieIsEncodedIsSaidToo) {
   for (const char* name : {"manifest.json", "resolved.toml", "report.json"})
     last += read_text(reference_ + "/ball." + name).size();
   for (int part = 1; part < 8; ++part) expect_clear_end_and_recovery(bytes - last + movie_bytes * part / 8, movie);
+}
+
+/// Formats whose header comes first need room twice: for the scratch file, then for the file.
+TEST_F(DiskFull, WhileExportingIsSaidAndLeavesNoWrongFile) {
+  command_ = "export";
+  const std::string formats = "--format glb,usda,mdd";
+  const std::uint64_t bytes = bytes_of_reference(formats);
+  std::mt19937_64 random(11);
+  std::uniform_int_distribution<std::uint64_t> sizes(0, bytes - bytes / 20);
+  for (int i = 0; i < 8; ++i) expect_clear_end_and_recovery(sizes(random), formats);
 }
 
 TEST_F(DiskFull, OfTheCacheAloneIsSaidOnceAndStopsNothing) {

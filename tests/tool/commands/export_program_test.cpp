@@ -90,7 +90,8 @@ TEST_F(ExportProgram, AllFormatsOfOneRunSayTheSamePositionsInFileOrder) {
 TEST_F(ExportProgram, ObjectSpaceWithItsPlacementIsWorldSpace) {
   const std::string placed =
       "--set body.ball.rotate_deg=[10,20,30] --set body.ball.translate=[0,0.5,-1] --set body.fit=2 ";
-  require_export(placed + "--format usda,glb");
+  require_export(placed + "--format glb");
+  require_export(placed + "--format usda --unit cm --up z");
   const auto object = read_usda(bytes("ball.usda"));
   const GlbScene glb = read_glb(bytes("ball.ball.glb"));
   require_export(placed + "--format obj --space world");
@@ -107,7 +108,8 @@ TEST_F(ExportProgram, ObjectSpaceWithItsPlacementIsWorldSpace) {
     for (std::size_t k = 0; k < 3; ++k)
       by_usda[static_cast<Index>(k)] =
           points[i] * rows[k] + points[i + 1] * rows[4 + k] + points[i + 2] * rows[8 + k] + rows[12 + k];
-    EXPECT_NEAR((by_usda - expected).norm(), 0, 1e-6);
+    const Vec3 turned(expected.x(), -expected.z(), expected.y());
+    EXPECT_NEAR((0.01 * by_usda - turned).norm(), 0, 1e-6);
     const Vec3 local = glb.scale[0] * Vec3(shown[i], shown[i + 1], shown[i + 2]);
     const Vec3 by_glb = turn * local + Vec3(glb.translation[0], glb.translation[1], glb.translation[2]);
     EXPECT_NEAR((by_glb - expected).norm(), 0, 1e-6);
@@ -230,7 +232,55 @@ TEST_F(ExportProgram, RefusesBeforeItWorksWhatAFormatCouldOnlyIgnore) {
     for (const std::string& word : refusal.words)
       EXPECT_NE(outcome.err.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.err;
   }
-  EXPECT_FALSE(exists(folder_ + "/out/.cache/simulation")) << "a frame was simulated for nothing";
+  EXPECT_FALSE(exists(folder_ + "/out")) << "something was made for nothing";
+}
+
+TEST(ExportOfTwoBodies, EachFileHoldsItsOwnBodyAndUsdaHoldsBoth) {
+  const std::string folder =
+      shot_folder("two",
+                  "[body.\"side kick\"]\nmesh = \"sphere.obj\"\nfit = 0.5\ntets = 300\ntranslate = [2, 0, 0]\n"
+                  "material = \"soft\"\n");
+  const Outcome outcome = run(fmt::format(
+      "softreel export {0}/shot.toml --output {0}/out --quiet --format obj,mdd,glb,usda --subframes 1", folder));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto usda = read_usda(read_text(folder + "/out/ball.usda"));
+  for (const auto& [body, prim] : {std::pair("ball", "ball"), std::pair("side kick", "side_kick")}) {
+    const std::string stem = fmt::format("{}/out/ball.{}", folder, body);
+    const PointCache mdd = read_mdd(read_text(stem + ".mdd"));
+    const GlbScene glb = read_glb(read_text(stem + ".glb"));
+    ASSERT_EQ(mdd.samples.size(), 7U);
+    for (std::size_t s = 0; s < 7; ++s) {
+      const double frame = 1 + 0.5 * static_cast<double>(s);
+      const std::string obj = fmt::format("{}.{:04}.{:03}.obj", stem, static_cast<int>(frame), 500 * (s % 2));
+      const std::vector<float> exact = to_floats(obj_values(obj, "v"));
+      expect_same_bits(mdd.samples[s], exact);
+      expect_same_bits(usda->child(fmt::format("ball/{}", prim)).property("points").samples.at(frame).floats(), exact);
+      const std::vector<float> shown = glb.positions_at(glb.times[s]);
+      for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(shown[i], exact[i], 1.2e-7 * (1 + std::abs(exact[i])));
+    }
+  }
+}
+
+TEST_F(ExportProgram, OptionsMayStandBeforeTheShot) {
+  const Outcome outcome =
+      run(fmt::format("softreel export --format obj,ply --frames 1 {0}/shot.toml --output {0}/out --quiet", folder_));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(exists(file("ball.ball.0001.obj")));
+  EXPECT_TRUE(exists(file("ball.ball.0001.ply")));
+}
+
+TEST_F(ExportProgram, TheCameraOfUsdaMovesWhereTheShotsDoesAndStaysOtherwise) {
+  require_export("--format usda");
+  const auto still = read_usda(bytes("ball.usda"));
+  const UsdPrim& camera = still->child("ball/camera");
+  EXPECT_NEAR(camera.property("focalLength").value.number, 0.5, 1e-7) << "50 mm in tenths of a metre";
+  EXPECT_EQ(camera.property("xformOp:transform").value.doubles().size(), 16U);
+  require_export("--format usda --set camera.focal_length_mm='[{frame=1,value=50},{frame=3,value=90}]'");
+  const auto zoomed = read_usda(bytes("ball.usda"));
+  const auto& lengths = zoomed->child("ball/camera").property("focalLength").samples;
+  ASSERT_EQ(lengths.size(), 4U);
+  EXPECT_NEAR(lengths.at(1).number, 0.5, 1e-7);
+  EXPECT_NEAR(lengths.at(3).number, 0.9, 1e-7);
 }
 
 TEST(ExportHelp, NamesEveryFormatWithItsLine) {

@@ -186,5 +186,30 @@ TEST_F(Kill, AtEveryChangeOfAFileLeavesNoWrongFile) {
   }
 }
 
+/// Files that grow sample by sample, and their scratch files, have no name before they are whole.
+TEST_F(Kill, WhileExportingLeavesNoWrongFileAndNoScratch) {
+  const std::string cache = folder_ + "/cache", reference = folder_ + "/reference", count = folder_ + "/count";
+  const auto to = [&](const std::string& output) {
+    return fmt::format("export {}/shot.toml --quiet --format glb,usda,mdd --output {} --cache {}", folder_, output,
+                       cache);
+  };
+  ASSERT_EQ(run_abused(to(folder_ + "/first"), {}).status, 0);  // fills the cache
+  ASSERT_EQ(run_abused(to(reference), {{"ROOT", reference}, {"COUNT_FILE", count}}).status, 0);
+  const std::uint64_t calls = read_counts(count).calls;
+  ASSERT_GT(calls, 20U);
+  for (std::uint64_t call = 1; call <= calls; call += std::max<std::uint64_t>(1, calls / 25)) {
+    SCOPED_TRACE(fmt::format("killed at change {} of {}", call, calls));
+    const std::string output = new_folder("kill_export");
+    EXPECT_EQ(run_abused(to(output), {{"ROOT", output}, {"KILL_AT", std::to_string(call)}}).status, 128 + SIGKILL);
+    for (const char* name : {"ball.ball.glb", "ball.usda", "ball.ball.mdd"})
+      if (exists(output + "/" + name)) {
+        EXPECT_TRUE(read_text(output + "/" + name) == read_text(reference + "/" + name)) << name;
+      }
+    EXPECT_EQ(run_abused(to(output), {}).status, 0);
+    expect_equal_final_files(reference, output);
+    EXPECT_EQ(files_under(reference), files_under(output)) << "a temporary file is left";
+  }
+}
+
 }  // namespace
 }  // namespace softreel

@@ -68,7 +68,7 @@ TEST(ExportOptions, RefuseWhatAFormatCouldOnlyIgnore) {
   expect_refused(wishes, {"--unit", "glb", "metres"});
   wishes = wish({"mdd"});
   wishes.up = "z";
-  expect_refused(wishes, {"--up", "mdd", "object space", "--space world"});
+  expect_refused(wishes, {"--up", "mdd", "object space", "--space world, or with usda"});
   wishes.space = "world";
   EXPECT_EQ(settings_of(wishes).up, UpAxis::Z);
 }
