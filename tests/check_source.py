@@ -23,6 +23,7 @@ FENCES = [
     (r"<embree3/", r"render/pathtrace/ray_scene_embree\.cpp$"),
     (r"<(EGL|GL|epoxy)/", r"render/preview/egl/[a-z_]+\.(cpp|h)$"),
     (r"<(Imf|Imath|OpenEXR|png\.h|stb)", r"render/image/image_io\.cpp$"),
+    (r"<openvdb/", r"(tool/export/level_set_openvdb|tests/tool/export/level_set_test)\.cpp$"),
     (r"<(toml\+\+|nlohmann|CLI)/", r"^(tool|tests/tool)/"),
     (r"<(petsc|cholmod|Eigen/CholmodSupport)", r"^tests/benchmark/rivals/"),
     (r"<(immintrin|x86intrin|experimental/simd)", r"_simd\.(cpp|h)$"),

@@ -48,7 +48,7 @@ softreel_configure() {
   local folder=$1
   shift
   [ $# -gt 0 ] || set -- -DSOFTREEL_WITH_EMBREE=ON -DSOFTREEL_WITH_EGL=ON \
-    -DSOFTREEL_WITH_ASSIMP=ON -DSOFTREEL_BUILD_TESTS=ON -DSOFTREEL_BUILD_BENCHMARKS=ON -DSOFTREEL_WERROR=ON \
+    -DSOFTREEL_WITH_ASSIMP=ON -DSOFTREEL_WITH_OPENVDB=ON -DSOFTREEL_BUILD_TESTS=ON -DSOFTREEL_BUILD_BENCHMARKS=ON -DSOFTREEL_WERROR=ON \
     -DCMAKE_BUILD_TYPE=Release
   local log
   log=$(cmake -S "$softreel_root" -B "$softreel_root/$folder" -G Ninja "$@" 2>&1) || {

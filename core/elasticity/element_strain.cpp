@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 
@@ -34,6 +35,22 @@ double von_mises_stress(const Vec3& stretches, const ElementMaterial& material) 
   // The deviator knows no pressure: 2 mu times that of the strain.
   const Vec3 deviator = (stretches.array() - stretches.mean()).matrix();
   return 2 * material.lame_mu() * std::sqrt(1.5) * deviator.norm();
+}
+
+Mat3 green_strain(const Mat3& gradient) {
+  return 0.5 * (gradient.transpose() * gradient - Mat3::Identity());
+}
+
+Mat3 cauchy_stress(const Mat3& first_piola, const Mat3& gradient) {
+  const double volume_ratio = gradient.determinant();
+  if (volume_ratio == 0) return Mat3::Constant(std::numeric_limits<double>::quiet_NaN());
+  const Mat3 stress = first_piola * gradient.transpose() / volume_ratio;
+  return 0.5 * (stress + stress.transpose());
+}
+
+double von_mises_of(const Mat3& stress) {
+  const Mat3 deviator = stress - stress.trace() / 3 * Mat3::Identity();
+  return std::sqrt(1.5) * deviator.norm();
 }
 
 }  // namespace softreel

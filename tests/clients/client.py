@@ -6,6 +6,8 @@ import subprocess
 import sys
 import tempfile
 
+import mesh_files
+
 SOFTREEL = os.environ.get("SOFTREEL_PROGRAM", "")
 # Where tool/test --clients puts the npm packages.
 CLIENTS = os.environ.get("SOFTREEL_CLIENTS", "")
@@ -148,10 +150,9 @@ def export(shot, folder, file_format, *options):
     softreel("export", shot, "--format", file_format, "--output", folder, *options)
 
 
-def exported_positions(shot, folder):
+def exported_positions(shot, folder, *options):
     """The truth of a proof: positions per frame as doubles, [frame][vertex] = (x, y, z), from softreel's PLY files."""
-    import mesh_files
-    export(shot, folder, "ply")
+    export(shot, folder, "ply", *options)
     truth = {}
     for frame in FRAMES:
         truth[frame] = mesh_files.read_ply(os.path.join(folder, "barrel.barrel.%04d.ply" % frame)).positions

@@ -26,22 +26,29 @@ def validate(folder, path):
     print("glTF validator %s: 0 errors, 0 warnings" % report["validatorVersion"])
 
 
-def play(shot, folder, path):
-    node = client.need_node("three")
-    truth = client.exported_positions(shot, folder)
-    settings = {"glb": path, "fps": 24, "frames": list(client.FRAMES), "vertices": len(truth[1])}
-    read = json.loads(node("read_glb.mjs", json.dumps(settings)))
+def compare(read, truth, where):
+    """The largest error over the frames, as a share of the size."""
     size = max(abs(c) for frame in truth.values() for p in frame for c in p)
     worst = 0.0
     for frame in client.FRAMES:
-        got = read["frames"][str(frame)]
+        got = read["frames"][str(frame)][where]
         client.check(len(got) == len(truth[frame]), "frame %d has %d vertices" % (frame, len(got)))
         for v, (p, q) in enumerate(zip(got, truth[frame])):
             error = max(abs(a - b) for a, b in zip(p, q)) / size
             worst = max(worst, error)
-            client.check(error <= TOLERANCE, "frame %d: vertex %d is %r instead of %r" % (frame, v, p, q))
-    print("three.js r%s: %d frames of %d vertices, largest error %.2g of the size" %
-          (read["revision"], len(client.FRAMES), len(truth[1]), worst))
+            client.check(error <= TOLERANCE, "%s, frame %d: vertex %d is %r instead of %r" % (where, frame, v, p, q))
+    return worst
+
+
+def play(shot, folder, path):
+    node = client.need_node("three")
+    truth = client.exported_positions(shot, folder)
+    in_world = client.exported_positions(shot, os.path.join(folder, "world"), "--space", "world")
+    settings = {"glb": path, "fps": 24, "frames": list(client.FRAMES), "vertices": len(truth[1])}
+    read = json.loads(node("read_glb.mjs", json.dumps(settings)))
+    worst, worst_in_world = compare(read, truth, "mesh"), compare(read, in_world, "world")
+    print("three.js r%s: %d frames of %d vertices, largest error %.2g of the size, in the world %.2g" %
+          (read["revision"], len(client.FRAMES), len(truth[1]), worst, worst_in_world))
 
 
 def main():

@@ -73,6 +73,17 @@ if(NOT SOFTREEL_WITH_EGL STREQUAL "OFF")
 endif()
 softreel_part(EGL "${egl_found}" "EGL and epoxy" OpenGL::EGL "${SOFTREEL_EPOXY}")
 
+# Debian 12 has no CMake package of OpenVDB, and its Find module lies where CMake does not look.
+if(NOT SOFTREEL_WITH_OPENVDB STREQUAL "OFF")
+  find_library(SOFTREEL_OPENVDB openvdb)
+  find_path(SOFTREEL_OPENVDB_INCLUDE openvdb/openvdb.h)
+  find_path(SOFTREEL_BOOST_IOSTREAMS_INCLUDE boost/iostreams/device/array.hpp)
+  if(SOFTREEL_OPENVDB AND SOFTREEL_OPENVDB_INCLUDE AND SOFTREEL_BOOST_IOSTREAMS_INCLUDE)
+    set(openvdb_found TRUE)
+  endif()
+endif()
+softreel_part(OPENVDB "${openvdb_found}" "OpenVDB" "${SOFTREEL_OPENVDB}" TBB::tbb)
+
 function(softreel_print_parts)
   message(STATUS "softreel ${PROJECT_VERSION}: ${CMAKE_BUILD_TYPE}, tests ${SOFTREEL_BUILD_TESTS}, benchmarks "
                  "${SOFTREEL_BUILD_BENCHMARKS}, sanitizers '${SOFTREEL_SANITIZE}', lazy parts ${SOFTREEL_LAZY_PARTS}; parts:${SOFTREEL_PART_TABLE}")

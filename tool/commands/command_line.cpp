@@ -222,6 +222,10 @@ void add_export_command(CLI::App& app, Parsed& parsed, Runner& run) {
       ->check(CLI::Range(0, 99))
       ->group("Files");
   exporting->add_flag("--normals", wishes.normals, "normals of the vertices too")->group("Files");
+  exporting->add_option("--voxel", wishes.voxel, "of vdb: edge of a voxel in the exported unit [1/160 of the body]")
+      ->option_text("EDGE")
+      ->check(length("edge"))
+      ->group("Files");
   exporting->callback([&] { run = [&parsed] { return run_export(parsed.exporting); }; });
 }
 

@@ -92,7 +92,8 @@ class BodyExport {
     const std::vector<Vec3> positions = export_positions(settings_, loaded, time.positions);
     const std::vector<Vec3> normals = export_normals(settings_, loaded, time.normals);
     std::optional<TetSample> tets;
-    if (!time.nodes.empty()) tets.emplace(TetSample{*run_.filled(body_), materials_, time.nodes});
+    if (!time.nodes.empty())
+      tets.emplace(TetSample{*run_.filled(body_), materials_, time.nodes, run_.resolved(body_).solver.dilatation});
     double shared = seconds_since(start);
     for (Taker& taker : series_) {
       if (!taker.wanted[static_cast<std::size_t>(place)]) continue;

@@ -74,6 +74,7 @@ void require_sayable(const ExportWishes& wishes, const ExportFormat& format, Exp
   };
   if (wishes.normals) require("--normals", "normals", &ExportFormat::has_normals);
   if (wishes.fps) require("--fps", "frame rate", &ExportFormat::has_seconds);
+  if (wishes.voxel) require("--voxel", "voxels", &ExportFormat::has_voxel);
   if (!wishes.unit.empty()) require_world("--unit", format, space);
   if (!wishes.up.empty()) require_world("--up", format, space);
 }
@@ -98,6 +99,7 @@ ExportSettings export_settings(const ExportWishes& wishes, const std::vector<con
   if (wishes.fps) settings.fps = *wishes.fps;
   settings.subframes = wishes.subframes;
   settings.normals = wishes.normals;
+  settings.voxel = wishes.voxel.value_or(0);
   for (const ExportFormat* format : formats) require_sayable(wishes, *format, settings.space);
   return settings;
 }

@@ -16,6 +16,7 @@ struct ExportWishes {
   std::optional<double> fps;
   int subframes = 0;
   bool normals = false;
+  std::optional<double> voxel;
 };
 
 /// The formats of --format, in the order given; OBJ if none is. Throws input_error for one that is not known.

@@ -153,6 +153,7 @@ StageKey ExportSeries::sample_key(int sample) const {
     key.add(look.base_color).add(look.roughness).add(look.metallic);
   }
   if (format_.needs_camera) add(key, camera_(times_.frame(sample)));
+  if (format_.has_voxel) key.add(settings_.voxel);
   return key.key();
 }
 
@@ -177,6 +178,7 @@ ExportTarget ExportSeries::target(int sample) const {
     growing->checksum.add(bytes);
     growing->file.write(bytes);
   };
+  target.threads = &run_.context().threads;
   target.folder = outputs_.folder();
   return target;
 }

@@ -30,6 +30,7 @@ struct ExportSettings {
   double fps = 24;             ///< frames a second at which it plays
   int subframes = 0;           ///< samples between two frames
   bool normals = false;
+  double voxel = 0;  ///< edge of a voxel, in the unit of the positions; 0: the format's own choice
 };
 
 /// When the samples of one file are taken, in frames of the shot.
@@ -46,6 +47,7 @@ struct TetSample {
   const FilledBody& filled;                       ///< rest nodes, tetrahedra, embedding of the surface
   const std::vector<ElementMaterial>& materials;  ///< per tetrahedron
   const std::vector<Vec3>& nodes;                 ///< deformed nodes
+  Dilatation dilatation = Dilatation::Capped;     ///< of the solver
 };
 
 /// One body at one time. Spans are valid during the call only.
@@ -82,7 +84,8 @@ struct ExportTarget {
   std::function<Camera(double frame)> camera;  ///< the shot's, in the scene (m, Y up)
   double aspect = 1;                           ///< width of the picture over its height
   ExportSink sink;
-  std::string folder;  ///< where scratch files may lie (tool/export/scratch_file.h)
+  const Threads* threads = nullptr;  ///< for formats that compute; they outlive the writer
+  std::string folder;                ///< where scratch files may lie (tool/export/scratch_file.h)
 };
 
 /// Writes one file. It holds one sample at most: what the format wants elsewhere than it comes goes to scratch files.
@@ -122,6 +125,7 @@ struct ExportFormat {
   bool has_seconds = false;    ///< knows how fast it plays
   bool has_transform = false;  ///< in object space, it places the body in a world with unit and axes
   bool has_units = true;       ///< false: the format itself fixes metres and Y up
+  bool has_voxel = false;      ///< cuts space into voxels, of the size asked for
   bool needs_look = false, needs_camera = false, needs_tets = false;
 
   /// Throws input_error for a target that cannot be said in the format.

@@ -12,12 +12,14 @@
 #include "tool/export/pc2_export.h"
 #include "tool/export/ply_export.h"
 #include "tool/export/usda_export.h"
+#include "tool/export/vdb_export.h"
+#include "tool/export/vtu_export.h"
 
 namespace softreel {
 
 const std::vector<ExportFormat>& export_formats() {
-  static const std::vector<ExportFormat> formats{obj_format(), ply_format(), pc2_format(),
-                                                 mdd_format(), glb_format(), usda_format()};
+  static const std::vector<ExportFormat> formats{obj_format(), ply_format(),  pc2_format(), mdd_format(),
+                                                 glb_format(), usda_format(), vtu_format(), vdb_format()};
   return formats;
 }
 

@@ -14,7 +14,7 @@ namespace {
 using namespace softreel::testing;
 
 /// The libraries behind the parts, as the names of their files begin.
-constexpr const char* kHeavy[] = {"libassimp", "libembree", "libEGL", "libepoxy", "softreel_part_"};
+constexpr const char* kHeavy[] = {"libassimp", "libembree", "libEGL", "libepoxy", "libopenvdb", "softreel_part_"};
 
 /// Adds the names of the files that one process mapped: what stands after the last / of "calling init: PATH" lines.
 void add_mapped(const std::string& loader_log, std::set<std::string>& names) {
@@ -98,6 +98,20 @@ TEST(Parts, PreviewLoadsEglInsteadOfEmbree) {
   EXPECT_FALSE(mapped.has("libembree"));
   EXPECT_FALSE(mapped.has("libassimp"));
 }
+
+#if SOFTREEL_HAS_OPENVDB
+TEST(Parts, LevelSetsAloneLoadOpenVdb) {
+  const std::string folder = shot_folder("parts_export");
+  const auto exported = [&](const char* format) {
+    return run_traced(
+        fmt::format("export {0}/shot.toml --output {0}/out --frames 1 --quiet --format {1}", folder, format));
+  };
+  EXPECT_EQ(exported("vtu").heavy(), Names());
+  const Mapped mapped = exported("vdb");
+  EXPECT_EQ(mapped.outcome.status, 0) << mapped.outcome.err;
+  EXPECT_EQ(mapped.heavy(), Names({"libopenvdb", "softreel_part_"}));
+}
+#endif
 
 TEST(Parts, OtherMeshFormatsLoadAssimpWhoseErrorsAreOurs) {
   const std::string folder = new_folder("parts_assimp");
