@@ -54,7 +54,6 @@ class ByteReader {
     get_raw(values.data(), size * sizeof(T));
     return values;
   }
-  bool at_end() const { return bytes_.empty(); }
 
  private:
   void get_raw(void* data, std::size_t size) {
