@@ -7,6 +7,7 @@
 
 #include "core/constraints/pins.h"
 #include "core/constraints/pulls.h"
+#include "core/dynamics/joints.h"
 #include "core/dynamics/pieces.h"
 #include "core/dynamics/simulator.h"
 #include "core/elasticity/assembly.h"
@@ -59,6 +60,7 @@ struct Simulator::Parts {
   ElasticBody body;
   NodalMasses masses;
   NodePins pins;
+  std::vector<Joint> joints;  ///< those that pieces, matrix and multigrid are made for
   Pieces pieces;
   BlockMatrixd matrix;
   Multigrid multigrid;
@@ -86,7 +88,12 @@ struct Simulator::Parts {
 
   std::size_t nodes() const { return model.mesh.nodes.size(); }
 
-  std::vector<ActivePull> pulls_at(double frame) const;
+  /// The bonds of the glues that stick at `frame`: those of the state, and new ones for glue that starts there.
+  std::vector<GlueBond> bonds_at(double frame) const;
+  /// Makes pieces, matrix and multigrid anew if they are not for these bonds. What is made depends on nothing else.
+  void join(const std::vector<GlueBond>& bonds);
+  /// Pulls, and the springs of the bonds.
+  std::vector<ActivePull> pulls_at(double frame, const std::vector<GlueBond>& bonds) const;
   /// Gravity, elasticity (of `stresses`) and pulls on the nodes, N.
   void gather_all_forces(std::span<const Vec3> positions, const std::vector<ActivePull>& pulls,
                          std::span<Vec3> forces) const;
@@ -96,6 +103,7 @@ struct Simulator::Parts {
   /// the first element whose entries of `blame` are not, or that with the greatest.
   std::string find_culprit(double frame, std::span<const Vec3> positions, std::span<const Vec3> blame) const;
   std::string find_boundless_pull(double frame, std::span<const Vec3> positions) const;
+  std::string describe_element(std::size_t element) const;
 
   StepReport step(double frame, double seconds, double error_limit);
   StepReport find_equilibrium(double frame);

@@ -76,7 +76,9 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
   coarse_lag.usable = false;
   known_rest.known = false;
   const PinnedNodes pinned = pins.at(frame);
-  const std::vector<ActivePull> pulls = pulls_at(frame);
+  std::vector<GlueBond> bonds = bonds_at(frame);
+  join(bonds);
+  const std::vector<ActivePull> pulls = pulls_at(frame, bonds);
   StepReport report;
   if (!pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
@@ -96,6 +98,7 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
     return report;
   }
   state = {std::move(next.positions), std::vector<Vec3>(nodes(), Vec3::Zero()), std::move(next.rotations)};
+  state.bonds = std::move(bonds);
   return report;
 }
 

@@ -166,6 +166,8 @@ Track<Transform> keys_in_meters(Track<Transform> track, bool in_box, bool pivot_
   return track;
 }
 
+}  // namespace
+
 std::vector<Index> select_or_fail(const Selection& selection, const SurfaceMesh& surface, const Origin& origin,
                                   const std::string& field) {
   std::vector<Index> points = at_field(origin, field + ".select", [&] { return select_points(selection, surface); });
@@ -176,6 +178,8 @@ std::vector<Index> select_or_fail(const Selection& selection, const SurfaceMesh&
       "{:.4g}, {:.4g}) m. Accepted: a selection that takes at least one vertex; enlarge it, or use unit = \"box\".",
       to_string(origin), field, box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()));
 }
+
+namespace {
 
 Vec3 centroid_of(const std::vector<Index>& points, const SurfaceMesh& surface) {
   Vec3 sum = Vec3::Zero();

@@ -12,10 +12,11 @@
 
 namespace softreel {
 
-/// Pins and pulls on points of the surface.
+/// Pins and pulls on points of the surface; of bodies that glue joins also that (glue_stage.h).
 struct BodyConstraints {
   std::vector<Pin> pins;
   std::vector<Pull> pulls;
+  std::vector<Glue> glues = {};
 };
 
 /// Selections and keys of a body's pins and pulls, in metres. Throws input_error with the field's place for a selection
@@ -40,6 +41,11 @@ FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const S
 
 /// The same without the cache: for meshes that nobody asks for again.
 FilledBody fill_body_anew(const BodySettings& body, const LoadedBody& loaded, const RunContext& context);
+
+/// The points of the surface that a selection takes. Throws input_error with the field's place, FIELD.select, if they
+/// are none.
+std::vector<Index> select_or_fail(const Selection& selection, const SurfaceMesh& surface, const Origin& origin,
+                                  const std::string& field);
 
 /// Adds what shapes the materials of a body's elements: its own, and its regions. Throws input_error as
 /// resolve_constraints, for regions.

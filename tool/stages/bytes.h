@@ -53,6 +53,7 @@ class ByteReader {
     get_raw(values.data(), size * sizeof(T));
     return values;
   }
+  bool is_at_end() const { return bytes_.empty(); }
 
  private:
   void get_raw(void* data, std::size_t size) {

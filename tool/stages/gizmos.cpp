@@ -88,7 +88,8 @@ GizmoMarks Gizmos::at(int frame, const std::vector<SkinnedBody>& bodies) const {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Points& points = bodies[b].times.back().positions;
     const BodyMarks& body = bodies_[b];
-    const auto& [pins, pulls] = body.constraints;
+    const std::vector<Pin>& pins = body.constraints.pins;
+    const std::vector<Pull>& pulls = body.constraints.pulls;
     if (kinds_.regions) add_dots(marks, points, body.region_dots, kRegionColor);
     for (std::size_t k = 0; kinds_.pins && k < pins.size(); ++k)
       if (is_active(pins[k].active, frame)) add_dots(marks, points, body.pin_dots[k], kPinColor);
