@@ -12,6 +12,9 @@
 namespace softreel {
 namespace {
 
+/// Glue of 1e4 times the stiffness of firm glue took ten times the iterations; at 1e6 times solves ended.
+constexpr double kStiffGlue = 1e4;
+
 /// Diagonal of the box around the nodes, m.
 double box_diagonal(const std::vector<Vec3>& nodes) {
   Vec3 low = nodes.front(), high = low;
@@ -161,6 +164,27 @@ std::string Simulator::Parts::find_boundless_pull(double frame, std::span<const 
   return {};
 }
 
+std::string Simulator::Parts::find_stiff_glue(double frame) const {
+  const GluedMesh glued{model.mesh, body.node_elements, model.materials, model.surface_points, model.embedding};
+  for (std::size_t g = 0; g < model.glues.size(); ++g) {
+    const Glue& glue = model.glues[g];
+    if (glue.stiffness.keys.empty() || !is_sticking(glue, frame)) continue;
+    const auto number = static_cast<std::int64_t>(g);
+    const std::span<const GlueBond> known = bonds_of(state.bonds, number);
+    const std::vector<GlueBond> made =
+        known.empty() ? bind_glue(glue, number, glued, state.positions, frame) : std::vector<GlueBond>{};
+    double firm = 0;
+    for (const GlueBond& bond : known.empty() ? std::span<const GlueBond>(made) : known) firm += bond.firmness;
+    const double stiffness = glue.stiffness.at(frame);
+    if (stiffness > kStiffGlue * firm)
+      return fmt::format(
+          "{}: its stiffness of {:g} N/m is {:.2g} times that of firm glue, {:.2g} N/m, which leaving "
+          "stiffness out gives",
+          glue.name, stiffness, stiffness / firm, firm);
+  }
+  return {};
+}
+
 std::string Simulator::Parts::describe_element(std::size_t element) const {
   const TetNodes rest = nodes_of(body.tets[element], body.rest_positions);
   const Vec3 center = 0.25 * (rest[0] + rest[1] + rest[2] + rest[3]);
@@ -181,6 +205,7 @@ std::string Simulator::Parts::find_culprit(double frame, std::span<const Vec3> p
     if (!std::isfinite(F.squaredNorm())) return blamed(e, "has a force that is not finite");
   }
   if (std::string pull = find_boundless_pull(frame, positions); !pull.empty()) return pull;
+  if (std::string glue = find_stiff_glue(frame); !glue.empty()) return glue;
   std::size_t worst = 0;
   double greatest = -1;
   for (std::size_t e = 0; e < body.tets.size(); ++e) {

@@ -103,6 +103,9 @@ struct Simulator::Parts {
   /// the first element whose entries of `blame` are not, or that with the greatest.
   std::string find_culprit(double frame, std::span<const Vec3> positions, std::span<const Vec3> blame) const;
   std::string find_boundless_pull(double frame, std::span<const Vec3> positions) const;
+  /// Names the first glue that sticks at `frame` and is so stiff that solves may end for its sake; empty if there is
+  /// none.
+  std::string find_stiff_glue(double frame) const;
   std::string describe_element(std::size_t element) const;
 
   StepReport step(double frame, double seconds, double error_limit);
