@@ -167,6 +167,7 @@ BodyModel GlueGroup::make_model() const {
 }
 
 GlueGroup::SplitFrame GlueGroup::split(int frame) const {
+  context_.stop_if_cancelled();
   const BodyFrame& whole = joined_->at(frame);
   SplitFrame result{frame, {}};
   ModelOffsets from;
