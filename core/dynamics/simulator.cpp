@@ -12,8 +12,8 @@
 namespace softreel {
 namespace {
 
-/// Glue of 1e4 times the stiffness of firm glue took ten times the iterations; at 1e6 times solves ended.
-constexpr double kStiffGlue = 1e4;
+/// Glue of 1e4 times the stiffness of firm glue took ten times the iterations on one bar; other solves ended there.
+constexpr double kStiffGlue = 1e3;
 
 /// Diagonal of the box around the nodes, m.
 double box_diagonal(const std::vector<Vec3>& nodes) {
