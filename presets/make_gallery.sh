@@ -18,7 +18,7 @@ trap 'rm -rf "$work"' EXIT
 
 # The frame of each shot that says most.
 frames="first_pull=38 bar_twist=64 soft_knees=37 two_bodies=14 pudding=17 small_strain=32 stiffness=10 long_stretch=42
-  flutter=60 stress=26 daylight=21 puppet=20 cushion=24 material_board=1"
+  flutter=60 stress=26 daylight=21 puppet=20 cushion=24 material_board=1 jelly_hat=30"
 
 mkdir -p "$here/gallery"
 for entry in $frames; do

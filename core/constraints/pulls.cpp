@@ -1,5 +1,6 @@
 #include "core/constraints/pulls.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/constraints/targets.h"
@@ -10,7 +11,8 @@ namespace {
 /// From the spring's point to its target.
 Vec3 stretch(const Spring& spring, std::span<const Vec3> positions) {
   Vec3 point = spring.offset;
-  for (std::size_t k = 0; k < 4; ++k) point += spring.weights[k] * positions[static_cast<std::size_t>(spring.nodes[k])];
+  for (std::size_t k = 0; k < spring.count; ++k)
+    point += spring.weights[k] * positions[static_cast<std::size_t>(spring.nodes[k])];
   return spring.target - point;
 }
 
@@ -22,7 +24,10 @@ double unlimited_energy(const ActivePull& pull, std::span<const Vec3> positions)
 }
 
 Spring make_spring(const Vec3& rest_point, const Tet& tet, const std::array<double, 4>& weights, const TetMesh& mesh) {
-  Spring spring{tet, weights, rest_point, Vec3::Zero(), 0};
+  Spring spring;
+  std::copy(tet.begin(), tet.end(), spring.nodes.begin());
+  std::copy(weights.begin(), weights.end(), spring.weights.begin());
+  spring.offset = rest_point;
   for (std::size_t k = 0; k < 4; ++k) spring.offset -= weights[k] * mesh.nodes[static_cast<std::size_t>(tet[k])];
   return spring;
 }
@@ -100,15 +105,16 @@ void add_pull_forces(const ActivePull& pull, std::span<const Vec3> positions, st
   const double factor = pull_factor(pull, positions);
   for (const Spring& spring : pull.springs) {
     const Vec3 force = factor * spring.stiffness * stretch(spring, positions);
-    for (std::size_t k = 0; k < 4; ++k) forces[static_cast<std::size_t>(spring.nodes[k])] += spring.weights[k] * force;
+    for (std::size_t k = 0; k < spring.count; ++k)
+      forces[static_cast<std::size_t>(spring.nodes[k])] += spring.weights[k] * force;
   }
 }
 
 void add_pull_stiffness(const ActivePull& pull, std::span<const Vec3> positions, double scale, BlockMatrixd& matrix) {
   const double factor = scale * pull_factor(pull, positions);
   for (const Spring& spring : pull.springs)
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 4; ++j) {
+    for (std::size_t i = 0; i < spring.count; ++i)
+      for (std::size_t j = 0; j < spring.count; ++j) {
         double* block = matrix.block(matrix.pattern.find(spring.nodes[i], spring.nodes[j]));
         const double value = factor * spring.stiffness * spring.weights[i] * spring.weights[j];
         for (int c = 0; c < 3; ++c) block[4 * c] += value;

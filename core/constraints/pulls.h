@@ -20,13 +20,17 @@
 
 namespace softreel {
 
-/// One spring from a surface point, which lies at offset + sum weights[k] x_k, to a target.
+/// One spring from a surface point, which lies at offset + sum weights[k] x_k, to a target; or one between two points
+/// of the material (glue.h): then the nodes are those of both, the weights of the second are negative, and offset and
+/// target are zero.
 struct Spring {
-  Tet nodes;
-  std::array<double, 4> weights;
-  Vec3 offset;           ///< m; zero for a point inside its element
-  Vec3 target;           ///< m
-  double stiffness = 0;  ///< N/m
+  std::array<Index, 8> nodes{};
+  std::array<double, 8> weights{};
+  std::size_t count = 4;       ///< of the nodes: those of one element, or of two
+  Vec3 offset = Vec3::Zero();  ///< m; zero for a point inside its element
+  Vec3 target = Vec3::Zero();  ///< m
+  double stiffness = 0;        ///< N/m
+  bool joins_material() const { return count == 8; }
   bool operator==(const Spring&) const = default;
 };
 

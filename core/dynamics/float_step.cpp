@@ -47,14 +47,43 @@ double norm(std::span<const Vec3> vectors) {
   return std::sqrt(sum);
 }
 
+/// The same ratio for the bonds of glue, whose ends move together as a stiff part does.
+double glue_over_mass(const Simulator::Parts& parts, const StepWork& work) {
+  if (work.bonds.empty()) return 0;
+  std::vector<double> stiffness(parts.nodes(), 0.0);
+  for (const ActivePull& pull : work.pulls) {
+    const double factor = work.step.seconds.velocity * work.step.seconds.position * pull_factor(pull, work.positions);
+    for (const Spring& spring : pull.springs)
+      for (std::size_t k = 0; k < spring.count && spring.joins_material(); ++k)
+        stiffness[static_cast<std::size_t>(spring.nodes[k])] +=
+            factor * spring.stiffness * spring.weights[k] * spring.weights[k];
+  }
+  double greatest = 0;
+  for (std::size_t i = 0; i < stiffness.size(); ++i) greatest = std::max(greatest, stiffness[i] / work.node_terms[i]);
+  return greatest;
+}
+
+/// The elements fill no block between two bodies.
+void clear_joints(const Simulator::Parts& parts, Multigrid& multigrid) {
+  BlockMatrixf& matrix = multigrid.float_matrix();
+  const auto row = [&](Index node) { return multigrid.row_of_node()[static_cast<std::size_t>(node)]; };
+  for (const Joint& joint : parts.joints)
+    for (const Index i : parts.body.tets[static_cast<std::size_t>(joint.element)])
+      for (const Index j : parts.body.tets[static_cast<std::size_t>(joint.other)])
+        for (const auto& [from, to] : {std::pair{i, j}, std::pair{j, i}}) {
+          float* block = matrix.block(matrix.pattern.find(row(from), row(to)));
+          std::fill(block, block + 9, 0.0F);
+        }
+}
+
 /// Adds scale * (secant) stiffness of a pull to the float matrix.
 void add_pull_stiffness(const ActivePull& pull, std::span<const Vec3> positions, double scale, Multigrid& multigrid) {
   BlockMatrixf& matrix = multigrid.float_matrix();
   const double factor = scale * pull_factor(pull, positions);
   const auto row = [&](Index node) { return multigrid.row_of_node()[static_cast<std::size_t>(node)]; };
   for (const Spring& spring : pull.springs)
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 4; ++j) {
+    for (std::size_t i = 0; i < spring.count; ++i)
+      for (std::size_t j = 0; j < spring.count; ++j) {
         float* block = matrix.block(matrix.pattern.find(row(spring.nodes[i]), row(spring.nodes[j])));
         const auto value = static_cast<float>(factor * spring.stiffness * spring.weights[i] * spring.weights[j]);
         for (int c = 0; c < 3; ++c) block[4 * c] += value;
@@ -117,23 +146,27 @@ double assemble_in_float(Simulator::Parts& parts, const StepWork& work, bool sam
       same_system ? nodes_of_slabs(parts.body.node_slabs, terms.changed) : std::vector<std::uint8_t>();
   parts.float_assembler().assemble(terms, work.node_terms, rows, parts.multigrid.float_matrix(), parts.threads);
   std::fill(terms.changed.begin(), terms.changed.end(), std::uint8_t{0});
+  clear_joints(parts, parts.multigrid);
   for (const ActivePull& pull : work.pulls) {
     add_pull_stiffness(pull, work.positions, work.step.seconds.velocity * work.step.seconds.position, parts.multigrid);
     // What is added here is taken away by making these rows anew.
     for (const Spring& spring : pull.springs)
-      for (const Index node : spring.nodes) choose_slabs_of(parts.body.node_slabs, node, terms.changed);
+      for (std::size_t k = 0; k < spring.count; ++k)
+        choose_slabs_of(parts.body.node_slabs, spring.nodes[k], terms.changed);
   }
   return static_cast<double>(std::count(rows.begin(), rows.end(), 0)) / static_cast<double>(parts.nodes());
 }
 
 }  // namespace
 
-bool suits_float(Simulator::Parts& parts, const StepSeconds& seconds) {
+bool suits_float(Simulator::Parts& parts, const StepWork& work) {
+  const StepSeconds& seconds = work.step.seconds;
   if (parts.float_seconds != seconds) {
     parts.float_seconds = seconds;
     parts.float_ratio = stiffness_over_mass(parts, seconds);
   }
-  return parts.params.tolerance >= kLeastTolerance && parts.float_ratio <= kGreatestRatio;
+  return parts.params.tolerance >= kLeastTolerance && parts.float_ratio <= kGreatestRatio &&
+         glue_over_mass(parts, work) <= kGreatestRatio;
 }
 
 SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work, StepReport& step) {

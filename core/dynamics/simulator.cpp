@@ -12,6 +12,9 @@
 namespace softreel {
 namespace {
 
+/// Glue of 1e4 times the stiffness of firm glue took ten times the iterations on one bar; other solves ended there.
+constexpr double kStiffGlue = 1e3;
+
 /// Diagonal of the box around the nodes, m.
 double box_diagonal(const std::vector<Vec3>& nodes) {
   Vec3 low = nodes.front(), high = low;
@@ -90,8 +93,14 @@ const FloatAssembler& Simulator::Parts::float_assembler() {
   return *assembler_in_float;
 }
 
-std::vector<ActivePull> Simulator::Parts::pulls_at(double frame, const Grabs& grabs) const {
-  return active_pulls(model.pulls, model.surface_points, model.embedding, model.mesh, frame, grabs.pulls);
+std::vector<ActivePull> Simulator::Parts::pulls_at(double frame, const Grabs& grabs,
+                                                   const std::vector<GlueBond>& bonds) const {
+  std::vector<ActivePull> pulls =
+      active_pulls(model.pulls, model.surface_points, model.embedding, model.mesh, frame, grabs.pulls);
+  for (std::size_t g = 0; g < model.glues.size(); ++g)
+    if (const auto own = bonds_of(bonds, static_cast<std::int64_t>(g)); !own.empty())
+      pulls.push_back(glue_springs(model.glues[g], own, model.mesh, frame));
+  return pulls;
 }
 
 void Simulator::Parts::gather_all_forces(std::span<const Vec3> positions, const std::vector<ActivePull>& pulls,
@@ -108,8 +117,39 @@ std::vector<std::uint8_t> Simulator::Parts::held_pieces(const PinnedNodes& pinne
   for (std::size_t i = 0; i < nodes(); ++i)
     if (pinned.held[i] != 0) hold(i);
   for (const ActivePull& pull : pulls)
-    for (const Spring& spring : pull.springs) hold(static_cast<std::size_t>(spring.nodes[0]));
+    for (const Spring& spring : pull.springs)
+      if (!spring.joins_material()) hold(static_cast<std::size_t>(spring.nodes[0]));
   return held;
+}
+
+std::vector<GlueBond> Simulator::Parts::bonds_at(double frame) const {
+  const GluedMesh glued{model.mesh, body.node_elements, model.materials, model.surface_points, model.embedding};
+  std::vector<GlueBond> bonds;
+  for (std::size_t g = 0; g < model.glues.size(); ++g) {
+    if (!is_sticking(model.glues[g], frame)) continue;
+    const auto number = static_cast<std::int64_t>(g);
+    const std::span<const GlueBond> known = bonds_of(state.bonds, number);
+    bonds.insert(bonds.end(), known.begin(), known.end());
+    if (!known.empty()) continue;
+    const std::vector<GlueBond> made = bind_glue(model.glues[g], number, glued, state.positions, frame);
+    log.info(fmt::format("{}: sticks at {} points from frame {:g} on", model.glues[g].name, made.size(), frame));
+    bonds.insert(bonds.end(), made.begin(), made.end());
+  }
+  return bonds;
+}
+
+void Simulator::Parts::join(const std::vector<GlueBond>& bonds) {
+  std::vector<Joint> needed = find_joints(model.glues, bonds);
+  if (needed == joints) return;
+  joints = std::move(needed);
+  pieces = join_pieces(find_pieces(model.mesh.tets, nodes()), model.mesh.tets, joints);
+  matrix = {join_pattern(stiffness_pattern(model.mesh.tets, static_cast<Index>(nodes())), model.mesh.tets, joints), {}};
+  multigrid = Multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern,
+                        with_poisson_ratio(params.multigrid, model.materials), threads);
+  assembler_in_double.reset();
+  assembler_in_float.reset();
+  coarse_lag.usable = false;
+  known_rest.known = false;
 }
 
 std::string Simulator::Parts::find_boundless_pull(double frame, std::span<const Vec3> positions) const {
@@ -129,27 +169,55 @@ std::string Simulator::Parts::find_boundless_pull(double frame, std::span<const 
   return {};
 }
 
+std::string Simulator::Parts::find_stiff_glue(double frame) const {
+  const GluedMesh glued{model.mesh, body.node_elements, model.materials, model.surface_points, model.embedding};
+  for (std::size_t g = 0; g < model.glues.size(); ++g) {
+    const Glue& glue = model.glues[g];
+    if (glue.stiffness.keys.empty() || !is_sticking(glue, frame)) continue;
+    const auto number = static_cast<std::int64_t>(g);
+    const std::span<const GlueBond> known = bonds_of(state.bonds, number);
+    const std::vector<GlueBond> made =
+        known.empty() ? bind_glue(glue, number, glued, state.positions, frame) : std::vector<GlueBond>{};
+    double firm = 0;
+    for (const GlueBond& bond : known.empty() ? std::span<const GlueBond>(made) : known) firm += bond.firmness;
+    const double stiffness = glue.stiffness.at(frame);
+    if (stiffness > kStiffGlue * firm)
+      return fmt::format(
+          "{}: its stiffness of {:g} N/m is {:.2g} times that of firm glue, {:.2g} N/m, which leaving "
+          "stiffness out gives",
+          glue.name, stiffness, stiffness / firm, firm);
+  }
+  return {};
+}
+
+std::string Simulator::Parts::describe_element(std::size_t element) const {
+  const TetNodes rest = nodes_of(body.tets[element], body.rest_positions);
+  const Vec3 center = 0.25 * (rest[0] + rest[1] + rest[2] + rest[3]);
+  const auto number = static_cast<Index>(element);
+  const BodyPart* part = nullptr;
+  for (const BodyPart& one : model.parts)
+    if (one.first_tet <= number) part = &one;
+  return fmt::format("{}: element {} with rest centroid ({:.6g}, {:.6g}, {:.6g})", part ? part->name : model.name,
+                     part ? number - part->first_tet : number, center.x(), center.y(), center.z());
+}
+
 std::string Simulator::Parts::find_culprit(double frame, std::span<const Vec3> positions,
                                            std::span<const Vec3> blame) const {
-  const auto describe_element = [&](std::size_t e, const char* what) {
-    const TetNodes rest = nodes_of(body.tets[e], body.rest_positions);
-    const Vec3 center = 0.25 * (rest[0] + rest[1] + rest[2] + rest[3]);
-    return fmt::format("{}: element {} with rest centroid ({:.6g}, {:.6g}, {:.6g}) {}", model.name, e, center.x(),
-                       center.y(), center.z(), what);
-  };
+  const auto blamed = [&](std::size_t e, const char* what) { return describe_element(e) + " " + what; };
   for (std::size_t e = 0; e < body.tets.size(); ++e) {
     const Mat3 F = deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], positions));
-    if (!F.allFinite()) return describe_element(e, "has a shape that is not finite");
-    if (!std::isfinite(F.squaredNorm())) return describe_element(e, "has a force that is not finite");
+    if (!F.allFinite()) return blamed(e, "has a shape that is not finite");
+    if (!std::isfinite(F.squaredNorm())) return blamed(e, "has a force that is not finite");
   }
   if (std::string pull = find_boundless_pull(frame, positions); !pull.empty()) return pull;
+  if (std::string glue = find_stiff_glue(frame); !glue.empty()) return glue;
   std::size_t worst = 0;
   double greatest = -1;
   for (std::size_t e = 0; e < body.tets.size(); ++e) {
     double size = 0;
     for (const Index node : body.tets[e]) {
       const double norm = blame[static_cast<std::size_t>(node)].norm();
-      if (!std::isfinite(norm)) return describe_element(e, "has a force that is not finite");
+      if (!std::isfinite(norm)) return blamed(e, "has a force that is not finite");
       size += norm;
     }
     if (size > greatest) {
@@ -157,7 +225,7 @@ std::string Simulator::Parts::find_culprit(double frame, std::span<const Vec3> p
       worst = e;
     }
   }
-  return describe_element(worst, "has the greatest unbalanced force");
+  return blamed(worst, "has the greatest unbalanced force");
 }
 
 Simulator::Simulator(BodyModel model, const SolverParams& params, const Threads& threads, const Log& log,

@@ -11,6 +11,7 @@
 #include "core/base/timer.h"
 #include "core/base/types.h"
 #include "core/constraints/constraints.h"
+#include "core/constraints/glue.h"
 #include "core/dynamics/recovery.h"
 #include "core/elasticity/elastic_body.h"
 #include "core/elasticity/material.h"
@@ -64,7 +65,13 @@ struct SolverParams {
 /// What Linearize::Auto stands for.
 Linearize linearization(const SolverParams& params);
 
-/// Everything the simulator knows of a body; immutable during a run.
+/// One of the bodies of a model that holds several: its nodes and elements are those from these on.
+struct BodyPart {
+  std::string name;
+  Index first_node = 0, first_tet = 0;
+};
+
+/// Everything the simulator knows of a body, or of several that glue joins (joined_model.h); immutable during a run.
 struct BodyModel {
   std::string name;
   TetMesh mesh;
@@ -74,6 +81,8 @@ struct BodyModel {
   std::vector<Pin> pins;
   std::vector<Pull> pulls;
   Vec3 gravity = Vec3(0, -9.81, 0);  ///< m/s^2
+  std::vector<BodyPart> parts = {};  ///< in order; empty: all is one body
+  std::vector<Glue> glues = {};
 };
 
 /// All that changes from step to step: storing it and setting it again continues with the same bits. After the
@@ -90,6 +99,7 @@ struct SimulationState {
   double previous_seconds = 0;                 ///< BDF2, Newmark, error control: length of the last step
   ElementTroubles troubles = {};               ///< of recovery: empty while all is well
   Grabs grabs = {};                            ///< of pins and pulls that grab
+  std::vector<GlueBond> bonds = {};            ///< of the glues that stick, ascending by glue and point
 };
 
 /// What a step did. If it could not be solved, `culprit` names the element (with its centroid) or constraint to blame.

@@ -7,6 +7,7 @@
 
 #include "core/constraints/pins.h"
 #include "core/constraints/pulls.h"
+#include "core/dynamics/joints.h"
 #include "core/dynamics/pieces.h"
 #include "core/dynamics/simulator.h"
 #include "core/elasticity/assembly.h"
@@ -59,6 +60,7 @@ struct Simulator::Parts {
   ElasticBody body;
   NodalMasses masses;
   NodePins pins;
+  std::vector<Joint> joints;  ///< those that pieces, matrix and multigrid are made for
   Pieces pieces;
   BlockMatrixd matrix;
   Multigrid multigrid;
@@ -86,11 +88,15 @@ struct Simulator::Parts {
 
   std::size_t nodes() const { return model.mesh.nodes.size(); }
 
-  /// Pulls at a frame that grab what `grabs` says.
-  std::vector<ActivePull> pulls_at(double frame, const Grabs& grabs) const;
   bool has_grabs() const;
   /// What pins and pulls grab once the body has come to `frame` in the present state.
   Grabs grabs_at(double frame) const;
+  /// The bonds of the glues that stick at `frame`: those of the state, and new ones for glue that starts there.
+  std::vector<GlueBond> bonds_at(double frame) const;
+  /// Makes pieces, matrix and multigrid anew if they are not for these bonds. What is made depends on nothing else.
+  void join(const std::vector<GlueBond>& bonds);
+  /// Pulls at a frame that grab what `grabs` says, and the springs of the bonds.
+  std::vector<ActivePull> pulls_at(double frame, const Grabs& grabs, const std::vector<GlueBond>& bonds) const;
   /// Gravity, elasticity (of `stresses`) and pulls on the nodes, N.
   void gather_all_forces(std::span<const Vec3> positions, const std::vector<ActivePull>& pulls,
                          std::span<Vec3> forces) const;
@@ -100,6 +106,10 @@ struct Simulator::Parts {
   /// the first element whose entries of `blame` are not, or that with the greatest.
   std::string find_culprit(double frame, std::span<const Vec3> positions, std::span<const Vec3> blame) const;
   std::string find_boundless_pull(double frame, std::span<const Vec3> positions) const;
+  /// Names the first glue that sticks at `frame` and is so stiff that solves may end for its sake; empty if there is
+  /// none.
+  std::string find_stiff_glue(double frame) const;
+  std::string describe_element(std::size_t element) const;
 
   StepReport step(double frame, double seconds, double error_limit);
   StepReport find_equilibrium(double frame);

@@ -140,9 +140,9 @@ void StaticSolver::measure_scales(StaticState& state) const {
     const double factor = pull_factor(pull, state.positions);
     for (const Spring& spring : pull.springs) {
       double size = spring.target.norm();
-      for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t k = 0; k < spring.count; ++k)
         size += std::abs(spring.weights[k]) * state.positions[static_cast<std::size_t>(spring.nodes[k])].norm();
-      for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t k = 0; k < spring.count; ++k)
         errors[static_cast<std::size_t>(spring.nodes[k])] +=
             std::numeric_limits<double>::epsilon() * factor * spring.stiffness * std::abs(spring.weights[k]) * size;
     }

@@ -77,7 +77,9 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
   known_rest.known = false;
   Grabs grabs = grabs_at(frame);
   const PinnedNodes pinned = pins.at(frame, grabs.pins);
-  const std::vector<ActivePull> pulls = pulls_at(frame, grabs);
+  std::vector<GlueBond> bonds = bonds_at(frame);
+  join(bonds);
+  const std::vector<ActivePull> pulls = pulls_at(frame, grabs, bonds);
   StepReport report;
   if (!pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
@@ -98,6 +100,7 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
   }
   state = {std::move(next.positions), std::vector<Vec3>(nodes(), Vec3::Zero()), std::move(next.rotations)};
   state.grabs = std::move(grabs);
+  state.bonds = std::move(bonds);
   return report;
 }
 

@@ -37,6 +37,12 @@ double explicit_share(const SolverParams& params) {
   return at_start ? 0.5 : 0.5 / 9;
 }
 
+/// Which nodes elements connect: bodies that glue joins do not bend as one.
+BlockPattern element_pattern(const Simulator::Parts& parts) {
+  if (parts.joints.empty()) return parts.matrix.pattern;
+  return stiffness_pattern(parts.model.mesh.tets, static_cast<Index>(parts.nodes()));
+}
+
 /// What the elements are linearised at, with their tension limits. A rotation that does not turn has no curvature, and
 /// accelerations reach no positions.
 StepSource find_source(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities) {
@@ -45,7 +51,7 @@ StepSource find_source(Simulator::Parts& parts, const StepWork& work, std::span<
   if (parts.params.rotation == RotationMethod::None || source.seconds.position == 0) return source;
   if (parts.tension_limits.empty())
     parts.tension_limits = find_tension_limits(
-        parts.body, find_thickness(parts.model.mesh, parts.matrix.pattern, youngs_moduli(parts.model.materials)),
+        parts.body, find_thickness(parts.model.mesh, element_pattern(parts), youngs_moduli(parts.model.materials)),
         parts.model.materials, explicit_share(parts.params));
   source.tension_limits = parts.tension_limits;
   return source;
@@ -71,9 +77,9 @@ void subtract_pull_product(const ActivePull& pull, std::span<const Vec3> positio
   const double factor = scale * pull_factor(pull, positions);
   for (const Spring& spring : pull.springs) {
     Vec3 vector = Vec3::Zero();
-    for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t k = 0; k < spring.count; ++k)
       vector += spring.weights[k] * vectors[static_cast<std::size_t>(spring.nodes[k])];
-    for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t k = 0; k < spring.count; ++k)
       forces[static_cast<std::size_t>(spring.nodes[k])] -= factor * spring.stiffness * spring.weights[k] * vector;
   }
 }
@@ -109,7 +115,7 @@ SolveReport solve_once(Simulator::Parts& parts, StepWork& work, StepReport& step
   work.node_terms.resize(parts.nodes());
   for (std::size_t i = 0; i < work.node_terms.size(); ++i)
     work.node_terms[i] = parts.masses.mass[i] + t * parts.masses.damping[i];
-  if (suits_float(parts, work.step.seconds)) {
+  if (suits_float(parts, work)) {
     const SolveReport report = solve_step_in_float(parts, work, step);
     if (report.ok()) return report;
   }
@@ -173,6 +179,7 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
   }
   next.troubles = std::move(work.troubles);
   next.grabs = parts.state.grabs;
+  next.bonds = std::move(work.bonds);
   remember(parts.params, work.step, parts.state, work.pinned.held, work.pinned.targets, next);
   return next;
 }
@@ -249,29 +256,23 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work) {
 }
 
 StepReport Simulator::Parts::step(double frame, double seconds, double error_limit) {
-  StepWork work{{},
-                pins.at(frame, state.grabs.pins),
-                pulls_at(frame, state.grabs),
-                {},
-                state.rotations,
-                {},
-                {},
-                {},
-                {},
-                {},
-                state.troubles};
+  StepWork work{{}, pins.at(frame, state.grabs.pins), {}, {}, state.rotations, {}, {}, {}, {}, {}, state.troubles};
   StepReport report;
   if (!work.pinned.conflict.empty()) {
     report.solve.status = SolveStatus::Breakdown;
     report.culprit = work.pinned.conflict;
     return report;
   }
+  work.bonds = bonds_at(frame);
+  join(work.bonds);
+  work.pulls = pulls_at(frame, state.grabs, work.bonds);
   const bool ends_frame = frame == std::floor(frame);
   if (is_at_rest(*this, work.pinned, work.pulls, seconds)) {
     if (ends_frame) coarse_lag.usable = false;
     report.nonlinear_iterations = 0;
     report.at_rest = true;
     state.grabs = grabs_at(frame);
+    state.bonds = std::move(work.bonds);
     return report;
   }
   const bool first = lacks_accelerations(params, state);

@@ -24,6 +24,7 @@ struct StepWork {
   std::vector<Vec3> right_side, change;
   ElementTroubles troubles = {};  ///< in: of the step before; find_step_rotations counts this one
   double kept_change = -1;        ///< StepSource::kept_change
+  std::vector<GlueBond> bonds = {};
 };
 
 /// t f + M (base velocities) - (M + t C) v - t (K + G) (seconds.position v + offsets) for v = velocities + change and t
@@ -42,7 +43,7 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work);
 
 /// True if such a step may be solved in float: its tolerance is not too tight, and no node is so much stiffer
 /// than it is heavy that rounding its row to float would act like a force.
-bool suits_float(Simulator::Parts& parts, const StepSeconds& seconds);
+bool suits_float(Simulator::Parts& parts, const StepWork& work);
 
 /// Solves for work.change with the matrix in float and residuals in double; fills work.right_side. Not ok where float
 /// does not do: then work.change means nothing, and the step is to be solved in double. step: gets what was kept.

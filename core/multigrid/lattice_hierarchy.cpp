@@ -79,6 +79,16 @@ std::vector<double> block_stiffness(const TetMesh& mesh, std::span<const double>
         double& value = stiffest[static_cast<std::size_t>(pattern.find(i, j))];
         value = std::max(value, element_stiffness[e]);
       }
+  // A block of no element joins bodies (glue), as stiff as the softer of its ends.
+  for (Index i = 0; i < pattern.rows(); ++i)
+    for (std::int64_t b = pattern.row_offsets[static_cast<std::size_t>(i)];
+         b < pattern.row_offsets[static_cast<std::size_t>(i) + 1]; ++b) {
+      const auto block = static_cast<std::size_t>(b);
+      if (stiffest[block] > 0) continue;
+      const Index j = pattern.column_indices[block];
+      stiffest[block] = std::min(stiffest[static_cast<std::size_t>(pattern.find(i, i))],
+                                 stiffest[static_cast<std::size_t>(pattern.find(j, j))]);
+    }
   return stiffest;
 }
 
@@ -179,7 +189,7 @@ Coarsening coarsen_with_few_copies(LevelNodes& fine, const BlockPattern& pattern
   const CoarseningParams coarsening{params.dropped_weight, params.stiffness_contrast};
   Coarsening coarse = coarsen(fine, pattern, frame, coarsening);
   if (fine.block_stiffness.empty()) return coarse;
-  Coarsening plain = coarsen({fine.positions, {}}, pattern, frame, coarsening);
+  Coarsening plain = coarsen({fine.positions, {}, fine.spacings}, pattern, frame, coarsening);
   if (static_cast<double>(coarse.nodes.positions.size()) <=
       kMostCopies * static_cast<double>(plain.nodes.positions.size()))
     return coarse;
@@ -198,7 +208,8 @@ std::vector<PlainLevel> coarsen_repeatedly(PlainLevel finest, LatticeFrame frame
     Coarsening coarse = levels.size() == 1 ? coarsen_with_few_copies(fine.nodes, fine.pattern, frame, params)
                                            : coarsen(fine.nodes, fine.pattern, frame,
                                                      {params.dropped_weight, params.stiffness_contrast});
-    if (static_cast<double>(coarse.nodes.positions.size()) > kLeastReduction * fine.pattern.rows()) break;
+    const bool reduces = static_cast<double>(coarse.nodes.positions.size()) <= kLeastReduction * fine.pattern.rows();
+    if (!reduces && coarse.staying == 0) break;
     fine.prolongation = std::move(coarse.prolongation);
     BlockPattern pattern = galerkin_pattern(fine.pattern, transpose(fine.prolongation), fine.prolongation);
     coarse.nodes.block_stiffness =
@@ -227,8 +238,9 @@ LatticeHierarchy build_lattice_hierarchy(const TetMesh& mesh, std::span<const do
                                          const BlockPattern& pattern, const MultigridParams& params) {
   CHECK(!mesh.nodes.empty());
   CHECK(pattern.rows() == static_cast<Index>(mesh.nodes.size()));
-  const std::vector<PlainLevel> plain = coarsen_repeatedly(
-      {{mesh.nodes, block_stiffness(mesh, element_stiffness, pattern)}, pattern, {}}, finest_frame(mesh), params);
+  const std::vector<PlainLevel> plain =
+      coarsen_repeatedly({{mesh.nodes, block_stiffness(mesh, element_stiffness, pattern), mesh.spacings}, pattern, {}},
+                         finest_frame(mesh), params);
   LatticeHierarchy hierarchy;
   std::vector<std::vector<Index>> orders, color_offsets(plain.size());
   for (std::size_t h = 0; h < plain.size(); ++h) orders.push_back(order_by_color(plain[h].pattern, color_offsets[h]));

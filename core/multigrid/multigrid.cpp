@@ -169,6 +169,7 @@ Multigrid::Multigrid(const TetMesh& mesh, std::span<const double> element_stiffn
 
 Multigrid::~Multigrid() = default;
 Multigrid::Multigrid(Multigrid&&) noexcept = default;
+Multigrid& Multigrid::operator=(Multigrid&&) noexcept = default;
 
 void Multigrid::update(const BlockMatrixd& matrix, std::span<const std::uint8_t> pinned) {
   levels_->pinned.assign(pinned.begin(), pinned.end());

@@ -85,6 +85,7 @@ class Multigrid {
             const MultigridParams& params, const Threads& threads);
   ~Multigrid();
   Multigrid(Multigrid&&) noexcept;
+  Multigrid& operator=(Multigrid&&) noexcept;
 
   /// Rebuilds all coarse operators and smoothers from a fine matrix: symmetric, positive definite on the nodes that are
   /// not pinned. A pinned node (pinned[i] != 0; empty: none) has zero rows and columns but for a diagonal block of at

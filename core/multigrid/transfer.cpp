@@ -87,11 +87,19 @@ class PartFinder {
   std::vector<Index> open_;
 };
 
+/// A node is replaced by those of a coarse lattice if that is so much coarser: of fewer fine nodes than that coarse
+/// ones could not be told apart.
+constexpr double kLeastCoarsening = 1.4;
+
+bool stays(const LevelNodes& fine, std::size_t node, const LatticeFrame& frame) {
+  return !fine.spacings.empty() && frame.spacing < kLeastCoarsening * fine.spacings[node];
+}
+
 std::vector<Dependence> find_dependences(const LevelNodes& fine, const LatticeFrame& frame, double dropped_weight) {
   std::vector<Dependence> all;
   all.reserve(3 * fine.positions.size());
   for (std::size_t i = 0; i < fine.positions.size(); ++i)
-    add_dependences(frame, fine.positions[i], static_cast<Index>(i), dropped_weight, all);
+    if (!stays(fine, i, frame)) add_dependences(frame, fine.positions[i], static_cast<Index>(i), dropped_weight, all);
   std::sort(all.begin(), all.end(),
             [](const Dependence& a, const Dependence& b) { return a.key != b.key ? a.key < b.key : a.fine < b.fine; });
   return all;
@@ -128,6 +136,14 @@ Coarsening coarsen(const LevelNodes& fine, const BlockPattern& pattern, const La
     count += finder.number_parts(std::span(all).subspan(begin, end - begin), count);
     result.nodes.positions.resize(static_cast<std::size_t>(count), lattice_position(frame, all[begin].corner));
     begin = end;
+  }
+  if (!fine.spacings.empty()) result.nodes.spacings.assign(static_cast<std::size_t>(count), frame.spacing);
+  for (std::size_t i = 0; i < fine.positions.size(); ++i) {
+    if (!stays(fine, i, frame)) continue;
+    all.push_back({0, static_cast<Index>(i), {}, 1.0, count++});
+    result.nodes.positions.push_back(fine.positions[i]);
+    result.nodes.spacings.push_back(fine.spacings[i]);
+    ++result.staying;
   }
   result.prolongation = transpose(make_restriction(all, count, static_cast<Index>(fine.positions.size())));
   return result;

@@ -18,6 +18,9 @@ struct LevelNodes {
   /// Young's modulus, Pa, per block of the level's pattern: of the stiffest element that has both nodes; on the
   /// diagonal, of the stiffest around the node. Empty: homogeneous.
   std::vector<double> block_stiffness;
+  /// Distance between neighbours around each node, m: a node whose neighbours are about as far as the coarse lattice's
+  /// stays as it is. Empty: all are nearer.
+  std::vector<double> spacings = {};
 };
 
 struct CoarseningParams {
@@ -29,6 +32,7 @@ struct CoarseningParams {
 struct Coarsening {
   LevelNodes nodes;
   WeightMatrix prolongation;  ///< R^T: fine rows by coarse columns; rows sum to 1
+  Index staying = 0;          ///< fine nodes that stay as they are: a coarser lattice will take them
 };
 
 /// Coarse nodes from the lattice `frame` (of the coarse spacing) for a fine level.
@@ -37,8 +41,8 @@ struct Coarsening {
 /// weights. A corner becomes one coarse node per connected part of the fine nodes that depend on it, where connected
 /// means: by edges of `pattern` that are not much softer than an end. So two legs that pass the same corner do not
 /// share a coarse node, nor do a hard inclusion and the flesh around it, nor two inclusions with a layer of flesh
-/// between. Coarse nodes are ordered by lattice position, copies by their first fine node. Stiffnesses are left empty:
-/// they need the coarse pattern (restrict_stiffness).
+/// between. Coarse nodes are ordered by lattice position, copies by their first fine node; nodes that stay come after
+/// them. Stiffnesses are left empty: they need the coarse pattern (restrict_stiffness).
 Coarsening coarsen(const LevelNodes& fine, const BlockPattern& pattern, const LatticeFrame& frame,
                    const CoarseningParams& params);
 

@@ -22,6 +22,9 @@ struct TetMesh {
   /// Per vertex of the surface it was made from: the element that carries it, -1: the one found by place; empty: all
   /// are found by place. Where elements overlap, place alone does not say which part a point belongs to.
   std::vector<Index> carriers = {};
+  /// Per node: spacing of the lattice around it, m, where bodies of different lattices are joined to one mesh; empty:
+  /// that of `lattice`.
+  std::vector<double> spacings = {};
 
   /// Share of element e that is material.
   double fill_of(std::size_t e) const { return fill.empty() ? 1.0 : fill[e]; }

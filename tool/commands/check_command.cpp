@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "tool/commands/commands.h"
+#include "tool/stages/glue_facts.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
 
@@ -30,6 +31,7 @@ int run_check(const ShotOptions& options) {
     for (const Pin& pin : constraints.pins) std::printf("  %s: %zu points\n", pin.name.c_str(), pin.points.size());
     for (const Pull& pull : constraints.pulls) std::printf("  %s: %zu points\n", pull.name.c_str(), pull.points.size());
   }
+  for (const std::string& line : glue_facts(run)) std::printf("%s\n", line.c_str());
   std::printf("%s: sound.\n", session.shot().path.c_str());
   return 0;
 }

@@ -34,13 +34,6 @@ std::string this_program() {
   return fs::read_symlink("/proc/self/exe").string();
 }
 
-/// "softreel 1.2.3": the rest differs between machines.
-std::string short_version() {
-  const std::string text = version_text();
-  const std::size_t blank = text.find(' ');
-  return text.substr(0, text.find_first_of(" \n", blank + 1));
-}
-
 std::string checksum_of_program() {
   std::string said;
   // Not /proc/self/exe: of the child that would be its own file.

@@ -1,5 +1,6 @@
 #include "tool/report/energy_history.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -70,7 +71,10 @@ std::vector<BodyEnergies> find_energies(const ShotRun& run, const std::string& e
   std::vector<BodyEnergies> energies;
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const BodySimulation& simulation = run.simulation(b);
-    BodyEnergies body{run.settings(b).name, {}};
+    const std::string& name = simulation.whole_name();
+    const auto is_known = [&name](const BodyEnergies& one) { return one.body == name; };
+    if (std::any_of(energies.begin(), energies.end(), is_known)) continue;  // glue joins it to an earlier body
+    BodyEnergies body{name, {}};
     for (const BodyEnergies& one : earlier) {
       if (one.body != body.body) continue;
       for (const auto& [frame, known] : one.frames)

@@ -218,6 +218,7 @@ void check_shot(const Place& place, const TomlValue& value, Shot& shot) {
                      (*table.find("region")->array())[i].find("material"));
   }
   if (shot.camera.focal_length_mm.keys.empty()) shot.camera.focal_length_mm.keys = {{0, 50, Ease::Smooth}};
+  check_glues(shot, place, value);
   open_for_dial(value, shot);
 }
 
@@ -284,6 +285,7 @@ const Table<Shot>& shot_table() {
     add_document_fields(t);
     t.add_table("shot", &Shot::settings, settings_table()).add_table("gravity", whole_shot, gravity_table());
     add_bodies_and_materials(t);
+    t.add_list("glue", &Shot::glues, glue_table());
     t.add_table("solver", whole_shot, solver_table())
         .add_table("camera", &Shot::camera, camera_table())
         .add_list("light", &Shot::lights, light_table())

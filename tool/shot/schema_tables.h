@@ -11,6 +11,9 @@ const Table<Shot>& shot_table();
 
 const Table<BodySettings>& body_table();
 const Table<MaterialSettings>& material_table();
+const Table<GlueSettings>& glue_table();
+/// What must hold between glue and the rest of the shot. Throws value_error.
+void check_glues(const Shot& shot, const Place& place, const TomlValue& value);
 
 const Table<Shot>& solver_table();
 /// The ways to find the rotations of elements, by name.

@@ -138,6 +138,18 @@ struct PullSettings {
   Origin origin;
 };
 
+/// Surfaces of two bodies held together.
+struct GlueSettings {
+  std::vector<std::string> bodies;    ///< two names
+  Selection select{{{SelectAll{}}}};  ///< which points of the first body may stick
+  double distance = 0;                ///< m; farthest from the second body's surface where the glue starts
+  Track<double> stiffness;            ///< N/m, of all bonds together; no keys: firm (core/constraints/glue.h)
+  double close = 0;                   ///< frames in which gaps close; 0: they stay
+  double max_force = 0;               ///< N; 0: no limit
+  std::vector<FrameRange> active;
+  Origin origin;
+};
+
 struct BodySettings {
   std::string name;
   std::string mesh;  ///< resolved path
@@ -261,6 +273,7 @@ struct Shot {
   ShotSettings settings;
   std::vector<BodySettings> bodies;  ///< in the order of the file
   std::map<std::string, MaterialSettings> materials;
+  std::vector<GlueSettings> glues;
   SolverParams solver;
   DialSettings dial;
   int threads = 0;  ///< 0: all processors

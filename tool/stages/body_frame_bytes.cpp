@@ -7,9 +7,7 @@
 namespace softreel {
 namespace {
 
-/// The last of a frame, and nothing where nothing grabs: so are frames stored that are older than grabbing.
 void pack(const Grabs& grabs, ByteWriter& out) {
-  if (grabs.pins.empty() && grabs.pulls.empty()) return;
   for (const std::vector<Grab>* list : {&grabs.pins, &grabs.pulls}) {
     out.put(static_cast<std::uint64_t>(list->size()));
     for (const Grab& grab : *list) {
@@ -22,7 +20,6 @@ void pack(const Grabs& grabs, ByteWriter& out) {
 
 Grabs unpack_grabs(ByteReader& in) {
   Grabs grabs;
-  if (in.at_end()) return grabs;
   for (std::vector<Grab>* list : {&grabs.pins, &grabs.pulls}) {
     list->resize(in.get<std::uint64_t>());
     for (Grab& grab : *list) {
@@ -50,10 +47,13 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.troubles);
   out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
   for (const auto& step : frame.earlier_steps) out.put_array(step);
-  const bool grabs = !frame.state.grabs.pins.empty() || !frame.state.grabs.pulls.empty();
-  if (grabs) CHECK(frame.energy.has_value());  // what follows the energy is found by its place
   if (frame.energy) out.put(*frame.energy);
-  pack(frame.state.grabs, out);
+  // Where nothing grabs or sticks frames end here, as those do that are older than grabs, glue and energies.
+  const SimulationState& state = frame.state;
+  if (state.grabs.pins.empty() && state.grabs.pulls.empty() && state.bonds.empty()) return out.take();
+  CHECK(frame.energy.has_value());  // what follows it is found by its place
+  pack(state.grabs, out);
+  out.put_array(state.bonds);
   return out.take();
 }
 
@@ -73,7 +73,9 @@ BodyFrame unpack_body_frame(std::span<const std::uint8_t> bytes) {
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();
   if (!in.at_end()) frame.energy = in.get<FrameEnergy>();
+  if (in.at_end()) return frame;
   frame.state.grabs = unpack_grabs(in);
+  frame.state.bonds = in.get_array<GlueBond>();
   return frame;
 }
 

@@ -5,16 +5,18 @@
 #include <vector>
 
 #include "core/constraints/constraints.h"
+#include "core/constraints/glue.h"
 #include "tool/shot/shot.h"
 #include "tool/stages/followed_files.h"
 #include "tool/stages/loaded_body.h"
 
 namespace softreel {
 
-/// Pins and pulls on points of the surface.
+/// Pins and pulls on points of the surface; of bodies that glue joins also that (glue_stage.h).
 struct BodyConstraints {
   std::vector<Pin> pins;
   std::vector<Pull> pulls;
+  std::vector<Glue> glues = {};
   FollowedFiles followed = {};  ///< what pins and pulls refer to
 };
 

@@ -33,6 +33,16 @@ ShotRun::ShotRun(const Shot& shot, const RunContext& context, DialUse dial) : sh
   for (std::size_t b = 0; b < shot.bodies.size(); ++b)
     constraints.push_back(resolve_constraints(shot, shot.bodies[b], bodies_[b]->loaded, context.log));
   for (std::size_t b = 0; b < shot.bodies.size(); ++b) resolve(b, std::move(constraints[b]), dial);
+  join_glued();
+}
+
+void ShotRun::join_glued() {
+  for (const std::vector<std::size_t>& group : glue_groups(shot_)) {
+    std::vector<GlueMember> members;
+    for (const std::size_t b : group)
+      members.push_back({bodies_[b]->resolved.bodies[b], bodies_[b]->loaded, *bodies_[b]->simulation});
+    groups_.push_back(std::make_unique<GlueGroup>(shot_, std::move(members), context_));
+  }
 }
 
 /// Chooses what the shot leaves open for a body; then all its keys are known.

@@ -11,6 +11,7 @@
 #include "tool/stages/body_stage.h"
 #include "tool/stages/cache_use.h"
 #include "tool/stages/dial_stage.h"
+#include "tool/stages/glue_stage.h"
 #include "tool/stages/run_context.h"
 #include "tool/stages/simulate_stage.h"
 
@@ -98,6 +99,7 @@ class ShotRun {
  private:
   struct Body;
   void resolve(std::size_t index, BodyConstraints constraints, DialUse use);
+  void join_glued();
 
   std::vector<Vec3> previous_nodes(Body& body, int frame, const SkinRequest& request) const;
   void skin_times(Body& body, int frame, const SkinRequest& request, const std::vector<Vec3>& previous,
@@ -108,6 +110,7 @@ class ShotRun {
   const Shot& shot_;
   const RunContext& context_;
   std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<std::unique_ptr<GlueGroup>> groups_;  ///< of bodies that glue joins
 };
 
 /// Node positions at a time in [-1, 0] frames before a frame, on the straight lines between sub-steps. `steps`: node

@@ -38,6 +38,12 @@ void add_constraints(KeyHasher& key, const BodyConstraints& constraints, double 
     key.add(stiffness);
     if (stiffness > 0) add_motion(key, pull, frame);
   }
+  for (const Glue& glue : constraints.glues) {
+    const bool sticks = is_sticking(glue, frame);
+    key.add(sticks);
+    if (sticks && !glue.stiffness.keys.empty()) key.add(glue.stiffness.at(frame));
+    if (sticks && glue.close_frames > 0) key.add(frame);
+  }
 }
 
 /// What is followed and whether it is grabbed, at all frames; nothing where neither is, as in shots without them.
@@ -125,7 +131,10 @@ int first_simulated_frame(const Shot& shot) {
 
 std::vector<StageKey> simulation_keys(const Shot& shot, const SolverParams& solver, const BodyConstraints& constraints,
                                       const StageKey& filled, const StageKey& materials) {
-  const StageKey base = simulation_base_key(shot, solver, constraints, filled, materials);
+  return chain_keys(shot, constraints, simulation_base_key(shot, solver, constraints, filled, materials));
+}
+
+std::vector<StageKey> chain_keys(const Shot& shot, const BodyConstraints& constraints, const StageKey& base) {
   const bool from_rest = shot.settings.mode == SimulationMode::Static && shot.settings.independent;
   const int start = first_simulated_frame(shot);
   std::vector<StageKey> keys;

@@ -29,6 +29,9 @@ bool has_grabs(const BodyConstraints& constraints);
 /// Where the simulation starts: the first frame less the preroll.
 int first_simulated_frame(const Shot& shot);
 
+/// Keys of all frames from first_simulated_frame to the last one over a base key.
+std::vector<StageKey> chain_keys(const Shot& shot, const BodyConstraints& constraints, const StageKey& base);
+
 /// Keys of all frames from first_simulated_frame to the last one, without simulating or filling anything.
 std::vector<StageKey> simulation_keys(const Shot& shot, const SolverParams& solver, const BodyConstraints& constraints,
                                       const StageKey& filled, const StageKey& materials);

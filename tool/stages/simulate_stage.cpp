@@ -7,6 +7,7 @@
 #include "core/base/check.h"
 #include "core/elasticity/mass.h"
 #include "tool/stages/body_frame_bytes.h"
+#include "tool/stages/glue_stage.h"
 #include "tool/stages/simulate_key.h"
 #include "tool/stages/stage_names.h"
 
@@ -33,34 +34,66 @@ SimulationWork& SimulationWork::operator+=(const SimulationWork& other) {
   return *this;
 }
 
+namespace {
+
+SimulationSource source_of(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded,
+                           const BodyConstraints& constraints, const RunContext& context) {
+  const StageKey filled = filled_key(settings, loaded);
+  return {filled,
+          simulation_keys(shot, solver_of(shot, settings), constraints, filled, materials_key(shot, settings, loaded)),
+          [&settings, &loaded, filled, &context] { return fill_body(settings, loaded, filled, context); },
+          [&shot, &settings, &loaded](const FilledBody& body, const BodyConstraints& held) {
+            return make_body_model(shot, settings, loaded, body, held);
+          }};
+}
+
+}  // namespace
+
 BodySimulation::BodySimulation(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded,
                                BodyConstraints constraints, const RunContext& context)
+    : BodySimulation(shot, settings, source_of(shot, settings, loaded, constraints, context), std::move(constraints),
+                     context) {}
+
+BodySimulation::BodySimulation(const Shot& shot, const BodySettings& settings, SimulationSource source,
+                               BodyConstraints&& constraints, const RunContext& context)
     : shot_(shot),
       settings_(settings),
-      loaded_(loaded),
       context_(context),
+      source_(std::move(source)),
       constraints_(std::move(constraints)),
-      filled_key_(softreel::filled_key(settings, loaded)),
-      frame_keys_(simulation_keys(shot, solver_of(shot, settings), constraints_, filled_key_,
-                                  materials_key(shot, settings, loaded))),
-      touched_(frame_keys_.size(), false),
+      touched_(source_.frame_keys.size(), false),
       frame_number_(first_simulated_frame(shot) - 1) {}
 
 BodySimulation::~BodySimulation() = default;
 
+void BodySimulation::join(GlueGroup& group, std::size_t member) {
+  group_ = &group;
+  member_ = member;
+}
+
 const StageKey& BodySimulation::frame_key(int frame) const {
-  return frame_keys_.at(static_cast<std::size_t>(frame - first_simulated_frame(shot_)));
+  if (group_ != nullptr) return group_->frame_key(frame);
+  return source_.frame_keys.at(static_cast<std::size_t>(frame - first_simulated_frame(shot_)));
+}
+
+const std::string& BodySimulation::whole_name() const {
+  return group_ != nullptr ? group_->name() : settings_.name;
+}
+
+const std::map<int, FrameEnergy>& BodySimulation::energies() const {
+  return group_ != nullptr ? group_->energies() : energies_;
 }
 
 const FilledBody& BodySimulation::filled() {
   if (!filled_) {
     context_.stop_if_cancelled();
-    filled_ = std::make_unique<FilledBody>(fill_body(settings_, loaded_, filled_key_, context_));
+    filled_ = std::make_unique<FilledBody>(source_.fill());
   }
   return *filled_;
 }
 
 std::vector<LevelInfo> BodySimulation::levels() const {
+  if (group_ != nullptr) return member_ == 0 ? group_->levels() : std::vector<LevelInfo>{};
   return simulator_ ? simulator_->levels() : std::vector<LevelInfo>{};
 }
 
@@ -74,9 +107,8 @@ SimulationState BodySimulation::rest_state() const {
 Simulator& BodySimulation::simulator() {
   if (!simulator_) {
     const ScopedStage stage(context_.times, "simulate/set-up");
-    simulator_ =
-        std::make_unique<Simulator>(make_body_model(shot_, settings_, loaded_, filled(), constraints_),
-                                    solver_of(shot_, settings_), context_.threads, context_.log, context_.times);
+    simulator_ = std::make_unique<Simulator>(source_.make_model(filled(), constraints_), solver_of(shot_, settings_),
+                                             context_.threads, context_.log, context_.times);
   }
   if (!simulator_holds_frame_) simulator_->set_state(frame_.state);
   simulator_holds_frame_ = true;
@@ -146,6 +178,7 @@ void BodySimulation::produce(int frame) {
 }
 
 const BodyFrame& BodySimulation::at(int frame) {
+  if (group_ != nullptr) return group_->at(member_, frame);
   if (frame_number_ == frame) return frame_;
   int from = frame;  // the nearest frame at or before this one that is at hand
   while (!(from == frame_number_ || load(from) || starts_from_rest(from))) --from;
@@ -239,11 +272,12 @@ BodyFrame BodySimulation::simulated(int frame) {
 }
 
 SimulationCounts BodySimulation::counts(int last) const {
+  if (group_ != nullptr) return member_ == 0 ? group_->counts(last) : SimulationCounts{};
   SimulationCounts counts = counts_;
   const auto frames = static_cast<std::size_t>(last - first_simulated_frame(shot_) + 1);
   for (std::size_t i = 0; i < frames; ++i) {
     if (touched_[i]) continue;
-    const auto seconds = context_.cache.seconds(kSimulationStage, frame_keys_[i]);
+    const auto seconds = context_.cache.seconds(kSimulationStage, source_.frame_keys[i]);
     if (!seconds) continue;
     counts.not_needed += 1;
     counts.saved_seconds += *seconds;

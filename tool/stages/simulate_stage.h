@@ -1,6 +1,7 @@
 /// One body through time: any frame, from the cache where it has it, simulated from the nearest stored one otherwise.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -60,15 +61,32 @@ struct SimulationCounts {
   std::vector<FrameRecovery> recoveries;  ///< of the computed frames
 };
 
+class GlueGroup;
+
+/// What a simulation is made of.
+struct SimulationSource {
+  StageKey filled_key;
+  std::vector<StageKey> frame_keys;  ///< from first_simulated_frame on
+  std::function<FilledBody()> fill;
+  std::function<BodyModel(const FilledBody&, const BodyConstraints&)> make_model;
+};
+
 /// Nothing is filled or simulated before it is asked for. Not thread-safe.
 class BodySimulation {
  public:
   /// All are kept by reference but the constraints.
   BodySimulation(const Shot& shot, const BodySettings& settings, const LoadedBody& loaded, BodyConstraints constraints,
                  const RunContext& context);
+  /// The same of any source: of several bodies as one. settings: name and rotation count.
+  BodySimulation(const Shot& shot, const BodySettings& settings, SimulationSource source, BodyConstraints&& constraints,
+                 const RunContext& context);
   ~BodySimulation();
 
-  const StageKey& filled_key() const { return filled_key_; }
+  /// From now on keys and frames are those of a group's member. The group is kept by reference.
+  void join(GlueGroup& group, std::size_t member);
+
+  const BodyConstraints& constraints() const { return constraints_; }
+  const StageKey& filled_key() const { return source_.filled_key; }
   /// Of a frame between first_simulated_frame and the last one of the shot.
   const StageKey& frame_key(int frame) const;
 
@@ -79,10 +97,13 @@ class BodySimulation {
   /// The body at a frame. Throws work_error naming frame, body and element or constraint if a step cannot be solved.
   const BodyFrame& at(int frame);
 
-  /// Frames up to `last` that were neither computed nor loaded count as not needed if they are stored.
+  /// Frames up to `last` that were neither computed nor loaded count as not needed if they are stored. Those of a group
+  /// count once, for its first member.
   SimulationCounts counts(int last) const;
-  /// Energies at the frames that this run computed or loaded.
-  const std::map<int, FrameEnergy>& energies() const { return energies_; }
+  /// What moves as one, and has one energy: the body, or the bodies that glue joins, "a + b".
+  const std::string& whole_name() const;
+  /// Energies of that at the frames that this run computed or loaded.
+  const std::map<int, FrameEnergy>& energies() const;
   /// Levels of the multigrid hierarchy; empty while no frame was computed.
   std::vector<LevelInfo> levels() const;
 
@@ -102,11 +123,11 @@ class BodySimulation {
 
   const Shot& shot_;
   const BodySettings& settings_;
-  const LoadedBody& loaded_;
   const RunContext& context_;
+  SimulationSource source_;
   BodyConstraints constraints_;
-  StageKey filled_key_;
-  std::vector<StageKey> frame_keys_;
+  GlueGroup* group_ = nullptr;  ///< that moves the body; null: it moves by itself
+  std::size_t member_ = 0;
   std::vector<bool> touched_;  ///< per frame: computed or loaded by this run
   std::unique_ptr<FilledBody> filled_;
   std::unique_ptr<Simulator> simulator_;  ///< made when the first frame has to be simulated

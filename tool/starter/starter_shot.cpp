@@ -247,7 +247,7 @@ class StarterText {
       std::erase_if(*whole.table(), [](const TomlEntry& entry) { return entry.key == "material"; });
       whole.table()->push_back(toml_entry("material", std::move(materials)));
       const Shot shot = parse_shot(kNew, whole);
-      const BodyConstraints constraints = resolve_constraints(shot.bodies.front(), body_.loaded.surface);
+      const BodyConstraints constraints = resolve_constraints(shot, shot.bodies.front(), body_.loaded, Log{});
       return !constraints.pins.empty();
     } catch (const Error&) {
       return false;
@@ -335,7 +335,8 @@ class StarterText {
   /// What was written is read again, and its selections are taken.
   void check(const std::string& text) const {
     const TomlValue document = parse_toml(text, kNew);
-    resolve_constraints(parse_shot(kNew, document).bodies.front(), body_.loaded.surface);
+    const Shot shot = parse_shot(kNew, document);
+    resolve_constraints(shot, shot.bodies.front(), body_.loaded, Log{});
   }
 
   const StarterOptions& options_;

@@ -191,6 +191,22 @@ mesh = "meshes/d.ply"
 material = "gel"
 tetrahedra = "meshes/d.msh"
 
+[[glue]]
+bodies = ["first_by_name", "third_by_name"]
+distance = 0.02
+select = [
+  { box = { min = [0, 0, 0], max = [1, 0.06, 1] }, unit = "box" },
+  { sphere = { center = [0.5, 1, 0.5], radius = 0.2 }, unit = "box" },
+  { plane = { point = [0, 0, 0.1], normal = [0, 1, 0] } },
+  { nearest = { point = [0.5, 1, 0.5], count = 3 }, unit = "box" },
+  { group = "knees" },
+  { all = true },
+]
+stiffness = [{ frame = 1, value = 400 }, { frame = 48, value = 0, ease = "linear" }]
+close = 0
+max_force = 12
+active = [1, 40]
+
 [material.rubber]
 youngs_modulus = 2e5
 poisson_ratio = 0.45
