@@ -1,8 +1,6 @@
 #include "tool/commands/command_line.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -11,10 +9,12 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "tool/commands/batch_options.h"
 #include "tool/commands/commands.h"
 #include "tool/commands/everyday_commands.h"
 #include "tool/commands/farm_options.h"
 #include "tool/commands/log_options.h"
+#include "tool/commands/shared_options.h"
 #include "tool/export/formats.h"
 #include "tool/report/version.h"
 
@@ -28,58 +28,6 @@ constexpr const char* kFooter =
 
 constexpr const char* kCommandFooter =
     "Fields: softreel explain FIELD. Exit status: 0 done; 1 the work failed; 2 the input is wrong; 130 after Ctrl-C.";
-
-/// Accepts finite numbers above 0, of a length or of `what` else; CLI11's own check lets NaN pass and prints its bounds
-/// with 300 digits.
-CLI::Validator length(const std::string& what = "length") {
-  return {[what](std::string& text) {
-            double value = 0;
-            const char* const end = text.data() + text.size();
-            const auto [stopped, code] = std::from_chars(text.data(), end, value);
-            const bool is_length = code == std::errc{} && stopped == end && std::isfinite(value) && value > 0;
-            return is_length ? std::string() : fmt::format("{} is no {}. Accepted: a number above 0.", text, what);
-          },
-          "", what};
-}
-
-/// Where results lie, and with which fields.
-void add_place_options(CLI::App& command, ShotOptions& options) {
-  command.add_option("--set", options.sets, "set a field of the shot, e.g. body.mesh=my.obj (repeatable)")
-      ->option_text("PATH=VALUE")
-      ->expected(1)
-      ->take_all()
-      ->group("Shot");
-  command.add_option("--output", options.output, "output folder [output.directory of the shot]")
-      ->option_text("DIR")
-      ->group("Files");
-  command.add_option("--cache", options.cache, "folder of stored results [.cache in the output folder]")
-      ->option_text("DIR")
-      ->group("Files");
-  command.add_option("--cache-limit", options.cache_limit_gb, "size of the cache, 0: no limit [output.cache_limit]")
-      ->option_text("GB")
-      ->check(CLI::NonNegativeNumber)
-      ->group("Files");
-}
-
-void add_run_options(CLI::App& command, ShotOptions& options) {
-  add_place_options(command, options);
-  command.add_option("--frames", options.frames, "frames to make: FIRST-LAST or one [all of the shot]")
-      ->option_text("RANGE")
-      ->group("Shot");
-  command.add_option("--threads", options.threads, "number of threads, 1 to 1024 [all processors]")
-      ->option_text("N")
-      ->check(CLI::Range(1, 1024))
-      ->group("Running");
-  command.add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Running");
-  command.add_flag("--json", options.json, "print the closing report as JSON on standard output")->group("Running");
-  command.add_flag("--dry-run", options.dry_run, "say what would be done, with memory and time; do nothing")
-      ->group("Running");
-}
-
-void add_shot_options(CLI::App& command, ShotOptions& options) {
-  command.add_option("shot", options.shot, "shot file (TOML)")->required()->option_text("SHOT");
-  add_run_options(command, options);
-}
 
 void add_picture_options(CLI::App& command, PictureOptions& options) {
   CLI::Option* picture =
@@ -142,50 +90,6 @@ void add_preview_command(CLI::App& app, Parsed& parsed, Runner& run) {
       ->group("Picture");
   preview->add_flag("--wireframe", options.wireframe, "draw the edges of the bodies' triangles")->group("Picture");
   preview->callback([&] { run = [&parsed] { return run_preview(parsed.preview); }; });
-}
-
-void add_batch_command(CLI::App& app, Parsed& parsed, Runner& run) {
-  CLI::App* batch = app.add_subcommand(
-      "batch",
-      "render several shots, and variants of them, each in a process of its own; one that fails stops no other");
-  BatchOptions& options = parsed.batch;
-  batch->add_option("shots", options.shots, "shot files (TOML)")->required()->option_text("SHOT ...");
-  add_run_options(*batch, options.shot);
-  batch->get_option("--threads")->description("threads of all running jobs together, 1 to 1024 [all processors]");
-  batch->get_option("--json")->description("print what became of the jobs as JSON on standard output");
-  batch
-      ->add_option("--sweep", options.sweeps,
-                   "render a variant for each value, e.g. body.tets=5000,20000; A..B/N: N numbers from A to B, "
-                   "A..B/Nlog: by equal factors; several: all combinations (repeatable)")
-      ->option_text("PATH=VALUES")
-      ->expected(1)
-      ->take_all()
-      ->group("Shot");
-  batch
-      ->add_option("--report", options.report,
-                   "folder of batch.html, batch.junit.xml and batch.json [where the files go]")
-      ->option_text("DIR")
-      ->group("Files");
-  batch->add_option("--jobs", options.jobs, "jobs at one time, 1 to 256 [by processors and memory]")
-      ->option_text("N")
-      ->check(CLI::Range(1, 256))
-      ->group("Running");
-  batch
-      ->add_option("--memory", options.memory_gb,
-                   "memory that running jobs may be expected to need [what is available]")
-      ->option_text("GB")
-      ->check(length("amount of memory"))
-      ->group("Running");
-  batch->add_option("--retry", options.retries, "times to try again a job that crashed or was killed, 0 to 100 [0]")
-      ->option_text("N")
-      ->check(CLI::Range(0, 100))
-      ->group("Running");
-  CLI::Option* fail_fast =
-      batch->add_flag("--fail-fast", options.fail_fast, "start no more jobs once one has failed")->group("Running");
-  batch->add_flag("--keep-going", options.keep_going, "run all jobs whatever fails (this is the default)")
-      ->excludes(fail_fast)
-      ->group("Running");
-  batch->callback([&] { run = [&parsed] { return run_batch(parsed.batch); }; });
 }
 
 void add_export_command(CLI::App& app, Parsed& parsed, Runner& run) {
@@ -279,7 +183,7 @@ void add_making_commands(CLI::App& app, Parsed& parsed, Runner& run) {
       ->group("Running");
   golden->callback([&] { run = [&parsed] { return run_golden(parsed.golden); }; });
 
-  add_batch_command(app, parsed, run);
+  add_batch_command(app, parsed.batch, run);
 }
 
 void add_looking_commands(CLI::App& app, Parsed& parsed, Runner& run) {

@@ -1,0 +1,59 @@
+#include "tool/commands/shared_options.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace softreel {
+
+CLI::Validator length(const std::string& what) {
+  return {[what](std::string& text) {
+            double value = 0;
+            const char* const end = text.data() + text.size();
+            const auto [stopped, code] = std::from_chars(text.data(), end, value);
+            const bool is_length = code == std::errc{} && stopped == end && std::isfinite(value) && value > 0;
+            return is_length ? std::string() : fmt::format("{} is no {}. Accepted: a number above 0.", text, what);
+          },
+          "", what};
+}
+
+void add_place_options(CLI::App& command, ShotOptions& options) {
+  command.add_option("--set", options.sets, "set a field of the shot, e.g. body.mesh=my.obj (repeatable)")
+      ->option_text("PATH=VALUE")
+      ->expected(1)
+      ->take_all()
+      ->group("Shot");
+  command.add_option("--output", options.output, "output folder [output.directory of the shot]")
+      ->option_text("DIR")
+      ->group("Files");
+  command.add_option("--cache", options.cache, "folder of stored results [.cache in the output folder]")
+      ->option_text("DIR")
+      ->group("Files");
+  command.add_option("--cache-limit", options.cache_limit_gb, "size of the cache, 0: no limit [output.cache_limit]")
+      ->option_text("GB")
+      ->check(CLI::NonNegativeNumber)
+      ->group("Files");
+}
+
+void add_run_options(CLI::App& command, ShotOptions& options) {
+  add_place_options(command, options);
+  command.add_option("--frames", options.frames, "frames to make: FIRST-LAST or one [all of the shot]")
+      ->option_text("RANGE")
+      ->group("Shot");
+  command.add_option("--threads", options.threads, "number of threads, 1 to 1024 [all processors]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1024))
+      ->group("Running");
+  command.add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Running");
+  command.add_flag("--json", options.json, "print the closing report as JSON on standard output")->group("Running");
+  command.add_flag("--dry-run", options.dry_run, "say what would be done, with memory and time; do nothing")
+      ->group("Running");
+}
+
+void add_shot_options(CLI::App& command, ShotOptions& options) {
+  command.add_option("shot", options.shot, "shot file (TOML)")->required()->option_text("SHOT");
+  add_run_options(command, options);
+}
+
+}  // namespace softreel

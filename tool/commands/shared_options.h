@@ -1,0 +1,25 @@
+/// Options that several commands share.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "tool/commands/commands.h"
+
+namespace softreel {
+
+/// Accepts finite numbers above 0, of a length or of `what` else; CLI11's own check lets NaN pass and prints its bounds
+/// with 300 digits.
+CLI::Validator length(const std::string& what = "length");
+
+/// Where results lie, and with which fields. options are kept by reference, here and below.
+void add_place_options(CLI::App& command, ShotOptions& options);
+
+/// These, and which frames, on what, and what is said meanwhile.
+void add_run_options(CLI::App& command, ShotOptions& options);
+
+/// These, and the shot.
+void add_shot_options(CLI::App& command, ShotOptions& options);
+
+}  // namespace softreel
