@@ -118,7 +118,7 @@ std::vector<std::uint8_t> Simulator::Parts::held_pieces(const PinnedNodes& pinne
     if (pinned.held[i] != 0) hold(i);
   for (const ActivePull& pull : pulls)
     for (const Spring& spring : pull.springs)
-      if (!spring.joins_material()) hold(static_cast<std::size_t>(spring.nodes[0]));
+      if (!spring.joins_material() && spring.stiffness > 0) hold(static_cast<std::size_t>(spring.nodes[0]));
   return held;
 }
 

@@ -49,11 +49,13 @@ double greatest_modulus(const ElasticLaw& law) {
 }
 
 /// Mass proportional, so that a free piece has its centre of mass where it was; nothing on pieces that a pin holds,
-/// which holds a whole tetrahedron and with it every rigid motion.
+/// which holds a whole tetrahedron and with it every rigid motion. Glue may hold by a point or two: a piece that only
+/// it ties to a held one is not held by it.
 std::vector<double> rigid_shifts(const Simulator::Parts& parts, std::span<const std::uint8_t> held) {
-  std::vector<std::uint8_t> fixed(static_cast<std::size_t>(parts.pieces.count), 0);
+  const Pieces own = parts.joints.empty() ? parts.pieces : find_pieces(parts.model.mesh.tets, parts.nodes());
+  std::vector<std::uint8_t> fixed(static_cast<std::size_t>(own.count), 0);
   for (std::size_t i = 0; i < held.size(); ++i)
-    if (held[i] != 0) fixed[static_cast<std::size_t>(parts.pieces.of_node[i])] = 1;
+    if (held[i] != 0) fixed[static_cast<std::size_t>(own.of_node[i])] = 1;
   double stiffness = 0, mass = 0;
   for (std::size_t e = 0; e < parts.body.tets.size(); ++e) {
     const ElementShape& shape = parts.body.shapes[e];
@@ -62,7 +64,7 @@ std::vector<double> rigid_shifts(const Simulator::Parts& parts, std::span<const 
   for (const double m : parts.masses.mass) mass += m;
   std::vector<double> shifts(held.size(), 0);
   for (std::size_t i = 0; i < held.size(); ++i)
-    if (fixed[static_cast<std::size_t>(parts.pieces.of_node[i])] == 0)
+    if (fixed[static_cast<std::size_t>(own.of_node[i])] == 0)
       shifts[i] = kRigidShift * stiffness / mass * parts.masses.mass[i];
   return shifts;
 }

@@ -22,12 +22,16 @@ constexpr std::size_t kMostJobs = 10000;
 /// The shot with the overrides of all jobs; nothing, and why, if its file cannot be read even without them.
 std::optional<Shot> read_shot(const std::string& path, const std::vector<Override>& overrides, std::string& problem) {
   try {
-    load_shot(path, {});
-  } catch (const Error& error) {
-    problem = error.what();
-    return std::nullopt;
+    return load_shot(path, overrides);
+  } catch (const Error& wrong_with_them) {
+    try {
+      load_shot(path, {});
+    } catch (const Error& error) {
+      problem = wrong_with_them.what();
+      return std::nullopt;
+    }
+    throw;  // the file is sound: an override is wrong
   }
-  return load_shot(path, overrides);
 }
 
 /// The shot of one variant. What is wrong with a value was said in --sweep, not in --set.
@@ -141,7 +145,17 @@ std::vector<BatchJob> make_jobs(const BatchRequest& request) {
   std::vector<BatchJob> jobs;
   for (const std::string& path : request.shots) {
     std::string problem;
-    const std::optional<Shot> shot = read_shot(path, axes.empty() ? overrides : std::vector<Override>{}, problem);
+    // The first variant tells whether the file can be read; what is wrong with its own values read_variant says.
+    std::vector<Override> first = overrides;
+    if (!variants.empty()) first.insert(first.end(), variants.front().values.begin(), variants.front().values.end());
+    std::optional<Shot> shot;
+    try {
+      shot = read_shot(path, first, problem);
+    } catch (const Error&) {
+      if (axes.empty()) throw;
+      for (const Variant& variant : variants) read_variant(path, overrides, variant);
+      throw;
+    }
     if (!shot) {
       jobs.push_back(unreadable(path, problem));
       continue;

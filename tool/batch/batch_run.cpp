@@ -37,6 +37,8 @@ std::vector<std::string> command_of(const BatchJob& job, const std::vector<std::
   std::vector<std::string> command{program_path()};
   command.insert(command.end(), job.arguments.begin(), job.arguments.end());
   command.insert(command.end(), more.begin(), more.end());
+  // What is read of their messages must not hang on the environment's log level.
+  command.insert(command.end(), {"--log-level", "info"});
   return command;
 }
 

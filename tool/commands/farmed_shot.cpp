@@ -143,11 +143,13 @@ ShotRun& FarmedShot::run() {
 }
 
 ShotProgress FarmedShot::progress(Thoroughness how) {
+  const WorkingDirectory there(site_.directory);  // relative paths in --set start there
   Outputs outputs(session_->shot().output.directory, name(), session_->context().log);
   return find_progress(run(), outputs, frames().first, frames().last, how);
 }
 
 FarmEstimate FarmedShot::estimate(int cpus) {
+  const WorkingDirectory there(site_.directory);
   Outputs outputs(session_->shot().output.directory, name(), session_->context().log);
   ShotRun& current = run();
   const SceneStage scenes(current);

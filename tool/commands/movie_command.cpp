@@ -56,13 +56,15 @@ int run_movie(const ShotOptions& options) {
   const SceneStage scenes(run);
   const PictureStage pictures(scenes, shot, outputs, session.context());
   require_pictures(session, pictures);
-  RunReport report = session.report("render", run);
-  report.pictures.kept = frames.count();
-  if (wanted.movie) report.made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
+  std::vector<std::string> made;
+  if (wanted.movie) made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
   const SheetOptions sheet;
   if (wanted.sheet)
-    report.made.push_back(make_sheet(shot, sheet_frames(frames.first, frames.last, sheet.count), sheet.columns, outputs,
-                                     session.context()));
+    made.push_back(make_sheet(shot, sheet_frames(frames.first, frames.last, sheet.count), sheet.columns, outputs,
+                              session.context()));
+  RunReport report = session.report("render", run);
+  report.pictures.kept = frames.count();
+  report.made = std::move(made);
   session.finish(report);
   return 0;
 }

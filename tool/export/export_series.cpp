@@ -150,11 +150,19 @@ StageKey ExportSeries::sample_key(int sample) const {
     if (simulated.is_between) key.add(simulation.frame_key(simulated.frame - 1));
     if (!format_.needs_look) continue;
     const Appearance look = export_body(settings_, run_, body, times_.first).appearance;
-    key.add(look.base_color).add(look.roughness).add(look.metallic);
+    key.add(look.base_color).add(look.roughness).add(look.metallic).add(run_.settings(body).material);
   }
-  if (format_.needs_camera) add(key, camera_(times_.frame(sample)));
+  if (format_.needs_camera) {
+    add(key, camera_(times_.frame(sample)));
+    key.add(aspect());
+  }
   if (format_.has_voxel) key.add(settings_.voxel);
   return key.key();
+}
+
+double ExportSeries::aspect() const {
+  const RenderParams& picture = run_.shot().render.params;
+  return static_cast<double>(picture.width) / picture.height;
 }
 
 const StageKey& ExportSeries::whole_key() {
@@ -172,8 +180,7 @@ ExportTarget ExportSeries::target(int sample) const {
   for (const std::size_t body : bodies_) target.bodies.push_back(export_body(settings_, run_, body, times_.first));
   target.times = one_file() ? times_ : SampleTimes{times_.frame(sample), 1, 1};
   target.camera = camera_;
-  const RenderParams& picture = run_.shot().render.params;
-  target.aspect = static_cast<double>(picture.width) / picture.height;
+  target.aspect = aspect();
   target.sink = [growing = growing_.get()](std::span<const std::uint8_t> bytes) {
     growing->checksum.add(bytes);
     growing->file.write(bytes);

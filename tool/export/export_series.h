@@ -56,6 +56,7 @@ class ExportSeries {
   std::string stem() const;
   std::string path(int sample) const;
   StageKey sample_key(int sample) const;
+  double aspect() const;  ///< of the picture, width over height
   const StageKey& whole_key();
   StageKey key(int sample) { return one_file() ? whole_key() : sample_key(sample); }
   ExportTarget target(int sample) const;

@@ -21,6 +21,16 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < ' ' || c == 127;
 }
 
+bool is_continuation(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+}
+
+/// Of UTF-8 text that was cut at some byte: the last character goes, whole or not.
+void leave_no_part_of_a_character(std::string& text) {
+  while (!text.empty() && is_continuation(text.back())) text.pop_back();
+  if (!text.empty() && static_cast<unsigned char>(text.back()) >= 0xC0U) text.pop_back();
+}
+
 /// The job's name is shown to people only: no control characters, no reference, not too long.
 std::string title_of(const FarmShot& shot) {
   std::string title;
@@ -29,6 +39,7 @@ std::string title_of(const FarmShot& shot) {
     if (c == '{' && !title.empty() && title.back() == '{') title += ' ';
     title += is_control(c) ? '_' : c;
   }
+  if (title.size() + 1 >= kMostOfName) leave_no_part_of_a_character(title);
   return title;
 }
 

@@ -39,6 +39,16 @@ std::vector<std::string> said_choices(const std::string& sentence) {
   return choices.size() > 1 ? choices : std::vector<std::string>();
 }
 
+/// The choices of a sentence that has a line for each of them, "NAME: what it is".
+std::vector<std::string> listed_choices(const std::string& sentence) {
+  std::vector<std::string> choices;
+  for (std::size_t line = sentence.find('\n'); line != std::string::npos; line = sentence.find('\n', line + 1)) {
+    const std::size_t end = sentence.find_first_of(" :\n", line + 1);
+    if (end != std::string::npos && sentence[end] == ':') choices.push_back(sentence.substr(line + 1, end - line - 1));
+  }
+  return choices;
+}
+
 ArgumentKind kind_of(const std::string& argument) {
   const std::string word = argument.substr(0, argument.find(' '));  // "SHOT ..." takes several
   static constexpr std::pair<std::string_view, ArgumentKind> kKinds[] = {
@@ -60,6 +70,7 @@ OptionText option_text(const CLI::Option& option) {
   if (!is_flag) {
     text.choices = checked_choices(type);
     if (text.choices.empty() && option.get_option_text().empty()) text.choices = said_choices(text.sentence);
+    if (text.choices.empty()) text.choices = listed_choices(text.sentence);
     text.argument = option.get_option_text();
     if (text.argument.empty())
       text.argument = text.choices.empty() ? type.substr(0, type.find_first_of(":{[ ")) : "NAME";

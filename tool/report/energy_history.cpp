@@ -47,6 +47,7 @@ void read_stored(const ShotRun& run, std::size_t index, BodyEnergies& body) {
     std::error_code gone;
     const auto size = std::filesystem::file_size(cache.path(kSimulationStage, key), gone);
     bytes += gone ? 0 : static_cast<double>(size);
+    if (!cache.damage(kSimulationStage, key).empty()) continue;  // whoever needs the frame says it and mends it
     const std::optional<FrameEnergy> energy = stored_energy(cache, key);
     if (!energy) return;  // an older softreel stored these: none of them will tell
     body.frames[frame] = {*energy, key};

@@ -100,6 +100,9 @@ void add_shares(const PullSettings& settings, const LoadedBody& loaded, const st
   if (painted == nullptr) return;
   for (std::size_t i = 0; i < pull.points.size(); ++i)
     pull.weights[i] *= (*painted)[static_cast<std::size_t>(pull.points[i])];
+  if (std::none_of(pull.weights.begin(), pull.weights.end(), [](double weight) { return weight > 0; }))
+    throw nothing_left(fmt::format("falloff = {} m reaches no point of a weight above 0", settings.falloff),
+                       "such points nearer to the selection's centre. Enlarge it.");
 }
 
 }  // namespace

@@ -135,6 +135,11 @@ std::unique_ptr<const FollowedMotion> follow_meshes(const SceneAnimation& scene,
   const bool as_many = vertices->count() == static_cast<Index>(body.surface.positions.size());
   const Binding binding = follow.bind.value_or(as_many && !follow.reference ? Binding::Vertex : Binding::Nearest);
   if (binding == Binding::Vertex) {
+    if (follow.reference)
+      throw input_error(
+          fmt::format("{}: bind = \"vertex\" starts from the body at rest, so that reference = {} says nothing.\n"
+                      "  Accepted: reference with bind = \"nearest\". Leave one of the two out.",
+                      follow.file, *follow.reference));
     if (!as_many) throw count_mismatch(follow, vertices->count(), body, "Or use bind = \"nearest\"");
     return follow_vertices(std::move(vertices), body, timing, placement);
   }

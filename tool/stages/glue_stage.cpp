@@ -87,7 +87,8 @@ GlueGroup::GlueGroup(const Shot& shot, std::vector<GlueMember> members, const Ru
     const std::size_t first = member_of(glue.bodies[0]);
     if (first == members_.size() || !can_stick(glue)) continue;
     const std::string field = fmt::format("glue[{}]", g);
-    joints_.push_back({glue, fmt::format("{} ({})", field, to_string(glue.origin)), first, member_of(glue.bodies[1]),
+    joints_.push_back({glue, field, fmt::format("{} ({})", field, to_string(glue.origin)), first,
+                       member_of(glue.bodies[1]),
                        select_or_fail(glue.select, members_[first].loaded, glue.origin, field)});
   }
   for (const GlueMember& member : members_)
@@ -152,7 +153,7 @@ Glue GlueGroup::make_glue(const Joint& joint, const std::vector<ModelOffsets>& o
   glue.name = joint.name;
   glue.body = first.settings.name;
   glue.other = second.settings.name;
-  glue.points = at_field(joint.settings.origin, joint.name, [&] {
+  glue.points = at_field(joint.settings.origin, joint.field, [&] {
     return make_glue_points(first.loaded.surface.positions, first.loaded.surface.triangles, joint.points, body.mesh,
                             body.embedding, std::min(spacing_of(body.mesh), spacing_of(other.mesh)));
   });

@@ -48,6 +48,7 @@ class GlueGroup {
   /// Glue between two members.
   struct Joint {
     const GlueSettings& settings;
+    std::string field;          ///< "glue[0]"
     std::string name;           ///< "glue[0] (shots/a.toml:31)"
     std::size_t first, second;  ///< members
     std::vector<Index> points;  ///< selected vertices of the first

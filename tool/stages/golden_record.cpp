@@ -38,7 +38,7 @@ Shot without_places(Shot shot) {
   for (auto& [name, material] : shot.materials)
     for (std::string* path : material.textures.paths()) keep_name(*path);
   for (BodySettings& body : shot.bodies)
-    for (std::string* path : constraint_files(body)) keep_name(*path);
+    for (std::string* path : constraint_files(body, shot.glues)) keep_name(*path);
   const OutputSettings output = shot.output;
   shot.output = {};
   shot.output.view = output.view;

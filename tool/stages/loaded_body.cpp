@@ -72,7 +72,7 @@ StageKey given_key(const TetMesh& mesh) {
 
 }  // namespace
 
-LoadedBody load_body(const BodySettings& body, const RunContext& context) {
+LoadedBody load_body(const BodySettings& body, const RunContext& context, std::span<const GlueSettings> glues) {
   const ScopedStage stage(context.times, "load");
   const std::string field = fmt::format("body.{}.mesh", body.name);
   LoadedBody loaded;
@@ -83,7 +83,7 @@ LoadedBody load_body(const BodySettings& body, const RunContext& context) {
   if (!body.tetrahedra.empty())
     loaded.given = at_field(body.origin, fmt::format("body.{}.tetrahedra", body.name),
                             [&] { return read_tet_mesh(body.tetrahedra, context.log); });
-  loaded.weight_maps = read_weight_maps(body, loaded.file_mesh);
+  loaded.weight_maps = read_weight_maps(body, glues, loaded.file_mesh);
   loaded.file_key = mesh_key(loaded.file_mesh);
   loaded.surface = loaded.file_mesh;
   apply(loaded.placement, loaded.surface);

@@ -29,6 +29,6 @@ struct LoadedBody {
 };
 
 /// Reads, checks, repairs and places the mesh of a body. Throws input_error.
-LoadedBody load_body(const BodySettings& body, const RunContext& context);
+LoadedBody load_body(const BodySettings& body, const RunContext& context, std::span<const GlueSettings> glues = {});
 
 }  // namespace softreel

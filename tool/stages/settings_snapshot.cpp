@@ -114,7 +114,7 @@ SettingsSnapshot snapshot(const ShotRun& run) {
     BodySettings& body = with_paths.bodies[b];
     body.mesh = absolute(body.mesh);
     snapshot[std::string(kMeshPrefix) + body.mesh] = run.loaded(b).file_key;
-    for (std::string* path : constraint_files(body)) {
+    for (std::string* path : constraint_files(body, with_paths.glues)) {
       *path = absolute(*path);
       snapshot[std::string(kMeshPrefix) + *path] = checksum_of(*path);
     }

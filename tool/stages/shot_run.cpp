@@ -24,7 +24,7 @@ ShotRun::ShotRun(const Shot& shot, const RunContext& context, DialUse dial) : sh
     const BodySettings& settings = shot.bodies[b];
     context.stop_if_cancelled();
     auto body = std::make_unique<Body>();
-    body->loaded = load_body(settings, context);
+    body->loaded = load_body(settings, context, shot.glues);
     for (const std::string& fact : body->loaded.facts) context.log.info(settings.name + ": " + fact);
     bodies_.push_back(std::move(body));
   }

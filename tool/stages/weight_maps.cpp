@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/base/srgb.h"
+#include "core/mesh/readers/mesh_source.h"
 #include "core/mesh/readers/weight_reader.h"
 #include "tool/stages/at_field.h"
 
@@ -28,7 +29,7 @@ std::vector<double> color_weights(const BodySettings& body, const SurfaceMesh& m
 
 std::vector<double> attribute_weights(const BodySettings& body, const WeightSource& source) {
   if (!source.file.empty()) return read_weights(source.file, source.attribute);
-  if (!body.mesh.ends_with(".ply"))
+  if (detail::lower_extension(body.mesh) != ".ply")
     throw input_error(
         fmt::format("{} is no PLY file, and others have no attributes.\n  Accepted: attribute of a PLY "
                     "mesh, or with file = \"X.ply\". Give the weights as a file.",
@@ -47,13 +48,19 @@ WeightMap read_map(const BodySettings& body, const SurfaceMesh& mesh, const Weig
   return map;
 }
 
+/// Calls visit(source, origin, field) for all weights of a selection.
+template <typename Select, typename Visit>
+void visit_terms(Select& selection, const Origin& origin, const std::string& field, const Visit& visit) {
+  for (auto& term : selection.terms)
+    if (auto* painted = std::get_if<SelectWeights>(&term.shape))
+      visit(painted->source, origin, field + ".select.weights");
+}
+
 /// Calls visit(source, origin, field) for all weights that the body names.
 template <typename Body, typename Visit>
 void visit_weights(Body& body, const Visit& visit) {
   const auto in_selection = [&](auto& selection, const Origin& origin, const std::string& field) {
-    for (auto& term : selection.terms)
-      if (auto* painted = std::get_if<SelectWeights>(&term.shape))
-        visit(painted->source, origin, field + ".select.weights");
+    visit_terms(selection, origin, field, visit);
   };
   const auto field = [&](const char* list, std::size_t i) { return fmt::format("body.{}.{}[{}]", body.name, list, i); };
   for (std::size_t i = 0; i < body.regions.size(); ++i)
@@ -68,21 +75,29 @@ void visit_weights(Body& body, const Visit& visit) {
 
 }  // namespace
 
-std::vector<WeightMap> read_weight_maps(const BodySettings& body, const SurfaceMesh& file_mesh) {
+std::vector<WeightMap> read_weight_maps(const BodySettings& body, std::span<const GlueSettings> glues,
+                                        const SurfaceMesh& file_mesh) {
   std::vector<WeightMap> maps;
-  visit_weights(body, [&](const WeightSource& source, const Origin& origin, const std::string& field) {
+  const auto read = [&](const WeightSource& source, const Origin& origin, const std::string& field) {
     const auto same = [&](const WeightMap& map) { return map.source == source; };
     if (std::none_of(maps.begin(), maps.end(), same))
       maps.push_back(at_field(origin, field, [&] { return read_map(body, file_mesh, source); }));
-  });
+  };
+  visit_weights(body, read);
+  for (std::size_t g = 0; g < glues.size(); ++g)
+    if (glues[g].bodies.front() == body.name)
+      visit_terms(glues[g].select, glues[g].origin, fmt::format("glue[{}]", g), read);
   return maps;
 }
 
-std::vector<std::string*> constraint_files(BodySettings& body) {
+std::vector<std::string*> constraint_files(BodySettings& body, std::span<GlueSettings> glues) {
   std::vector<std::string*> files;
-  visit_weights(body, [&](WeightSource& source, const Origin&, const std::string&) {
+  const auto keep = [&](WeightSource& source, const Origin&, const std::string&) {
     if (!source.file.empty()) files.push_back(&source.file);
-  });
+  };
+  visit_weights(body, keep);
+  for (GlueSettings& glue : glues)
+    if (glue.bodies.front() == body.name) visit_terms(glue.select, glue.origin, "", keep);
   for (PinSettings& pin : body.pins)
     if (pin.follow) files.push_back(&pin.follow->file);
   for (PullSettings& pull : body.pulls)

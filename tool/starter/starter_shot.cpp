@@ -10,6 +10,8 @@
 #include "tool/shot/schema.h"
 #include "tool/shot/shot_layers.h"
 #include "tool/shot/shot_select.h"
+#include "tool/stages/constraint_stage.h"
+#include "tool/stages/weight_maps.h"
 #include "tool/starter/commented_document.h"
 #include "tool/starter/preset_library.h"
 #include "tool/starter/starter_stage.h"
@@ -56,7 +58,9 @@ void rebase_paths(TomlValue& value, const std::string& at, const fs::path& folde
       rebase_paths(entry.value, at.empty() ? key_text(entry.key) : at + "." + key_text(entry.key), folder);
   const std::string* text = value.text();
   const FieldText* field = text == nullptr ? nullptr : find_field(at);
-  if (field == nullptr || field->type != "path" || value.origin.file == kNew || fs::path(*text).is_absolute()) return;
+  if (field == nullptr || (field->type != "path" && field->type != "path or table") || value.origin.file == kNew ||
+      fs::path(*text).is_absolute())
+    return;
   value.data = path_from((fs::path(value.origin.file).parent_path() / *text).lexically_normal().string(), folder);
 }
 
@@ -110,6 +114,7 @@ class StarterText {
     if (options_.like.empty()) return;
     preset_file_ = preset_file(options_.like);
     preset_ = load_layers(preset_file_, {});
+    parse_shot(preset_file_, preset_);  // says its mistakes
   }
 
   void load_material() {
@@ -247,8 +252,7 @@ class StarterText {
       std::erase_if(*whole.table(), [](const TomlEntry& entry) { return entry.key == "material"; });
       whole.table()->push_back(toml_entry("material", std::move(materials)));
       const Shot shot = parse_shot(kNew, whole);
-      const BodyConstraints constraints = resolve_constraints(shot, shot.bodies.front(), body_.loaded, Log{});
-      return !constraints.pins.empty();
+      return !constraints_of(shot).pins.empty();
     } catch (const Error&) {
       return false;
     }
@@ -332,11 +336,18 @@ class StarterText {
     return text + "# Lengths are in metres, y is up, colours are linear RGB.\n\n";
   }
 
+  /// Of the body as it is loaded, with the weights that this shot paints.
+  BodyConstraints constraints_of(const Shot& shot) const {
+    LoadedBody loaded = body_.loaded;
+    loaded.weight_maps = read_weight_maps(shot.bodies.front(), {}, loaded.file_mesh);
+    return resolve_constraints(shot, shot.bodies.front(), loaded, Log{});
+  }
+
   /// What was written is read again, and its selections are taken.
   void check(const std::string& text) const {
-    const TomlValue document = parse_toml(text, kNew);
-    const Shot shot = parse_shot(kNew, document);
-    resolve_constraints(shot, shot.bodies.front(), body_.loaded, Log{});
+    const std::string file = (folder_ / kNew).string();  // relative paths start there
+    const TomlValue document = parse_toml(text, file);
+    constraints_of(parse_shot(file, document));
   }
 
   const StarterOptions& options_;

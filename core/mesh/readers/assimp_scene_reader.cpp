@@ -62,7 +62,11 @@ class SceneReader {
     SceneMesh mesh;
     mesh.name = from.mName.C_Str();
     mesh.node = node;
-    for (unsigned v = 0; v < from.mNumVertices; ++v) mesh.positions.push_back(to_vector(from.mVertices[v]));
+    for (unsigned v = 0; v < from.mNumVertices; ++v) {
+      mesh.positions.push_back(to_vector(from.mVertices[v]));
+      if (!mesh.positions.back().allFinite())
+        throw contradiction(path_, fmt::format("vertex {} of mesh '{}' is nowhere", v, mesh.name));
+    }
     for (unsigned f = 0; f < from.mNumFaces; ++f) {
       const aiFace& face = from.mFaces[f];
       for (unsigned k = 0; k < face.mNumIndices; ++k)

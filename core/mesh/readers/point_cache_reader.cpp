@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -78,7 +79,8 @@ PointCache read_pc2(const MeshSource& source, double fps) {
   const auto rate = double{words.next<float>()};
   const auto samples = words.next<std::int32_t>();
   if (version != 1) throw broken_cache(source, fmt::format("it has version {}", version));
-  if (!(rate > 0)) throw broken_cache(source, fmt::format("its samples are {} frames apart", rate));
+  if (!(rate > 0) || !std::isfinite(rate))
+    throw broken_cache(source, fmt::format("its samples are {} frames apart", rate));
   require_size(source, words, samples, cache.points, 3 * std::int64_t{cache.points});
   for (std::int32_t s = 0; s < samples; ++s) cache.seconds.push_back(s * rate / fps);
   read_positions(source, words, cache);

@@ -26,10 +26,10 @@ std::vector<JobPictures> pictures_of(const BatchResult& batch) {
 
 TEST(BatchPage, NeedsNothingButItselfWhateverTheWords) {
   BatchResult batch = sample_batch();
-  batch.results[0].facts.energies = {falling(kNasty)};
-  batch.results[0].facts.stages = {{kNasty, 2.0}, {"trace", 1.0}};
-  batch.results[0].facts.made = batch.results[0].facts.skipped = {kNasty};
-  const nlohmann::json page = checked("check_page.py", batch_page(batch, pictures_of(batch), kNasty, kNasty));
+  batch.results[0].facts.energies = {falling(kHostileText)};
+  batch.results[0].facts.stages = {{kHostileText, 2.0}, {"trace", 1.0}};
+  batch.results[0].facts.made = batch.results[0].facts.skipped = {kHostileText};
+  const nlohmann::json page = checked("check_page.py", batch_page(batch, pictures_of(batch), kHostileText, kHostileText));
   ASSERT_TRUE(page.is_object());
   EXPECT_EQ(page["counts"]["img"], 4);
   EXPECT_EQ(page["counts"]["svg"], 1);

@@ -19,18 +19,18 @@
 namespace softreel::testing {
 
 /// Everything that a name or a message can do to markup.
-inline const std::string kNasty = "a<b> & \"c\" 'd' ]]> \x01 \xff\xfe </pre></testcase> \xC3\xA9 \n\ttwo";
+inline const std::string kHostileText = "a<b> & \"c\" 'd' ]]> \x01 \xff\xfe </pre></testcase> \xC3\xA9 \n\ttwo";
 
 /// One job in each state, with nasty words; the failed ones by status 1, by status 2 and by a signal.
 inline BatchResult sample_batch() {
   BatchResult batch;
   const auto add = [&](JobState state, int status, int signal, const std::string& message) {
     BatchJob job;
-    job.shot = "shots/" + kNasty + ".toml";
+    job.shot = "shots/" + kHostileText + ".toml";
     job.name = "job" + std::to_string(batch.jobs.size());
-    job.variant = batch.jobs.size() % 2 == 0 ? kNasty : "";
-    if (!job.variant.empty()) job.swept = {"a.field_of=" + kNasty, "b=2"};
-    job.arguments = {"render", job.shot, "--set", "x='" + kNasty};
+    job.variant = batch.jobs.size() % 2 == 0 ? kHostileText : "";
+    if (!job.variant.empty()) job.swept = {"a.field_of=" + kHostileText, "b=2"};
+    job.arguments = {"render", job.shot, "--set", "x='" + kHostileText};
     JobResult result;
     result.state = state;
     result.status = status;
@@ -39,20 +39,20 @@ inline BatchResult sample_batch() {
     result.attempts = state == JobState::NotStarted || state == JobState::UpToDate ? 0 : 1;
     result.seconds = 1.25;
     result.plan.known = true;
-    result.warnings = {kNasty};
+    result.warnings = {kHostileText};
     batch.jobs.push_back(job);
     batch.results.push_back(result);
   };
   add(JobState::Done, 0, 0, "");
   add(JobState::UpToDate, 0, 0, "");
-  add(JobState::Failed, 1, 0, kNasty);
+  add(JobState::Failed, 1, 0, kHostileText);
   add(JobState::Failed, 2, 0, "shot.toml:3: wrong\n  Accepted: right.");
   add(JobState::Failed, 0, SIGABRT, "It was ended by signal 6 (SIGABRT).");
   add(JobState::Interrupted, 0, 0, "");
   add(JobState::NotStarted, 0, 0, "");
   batch.seconds = 3.5;
   batch.bytes = 8e9;
-  batch.command = "softreel batch " + kNasty;
+  batch.command = "softreel batch " + kHostileText;
   return batch;
 }
 

@@ -200,6 +200,8 @@ select = [
   { plane = { point = [0, 0, 0.1], normal = [0, 1, 0] } },
   { nearest = { point = [0.5, 1, 0.5], count = 3 }, unit = "box" },
   { group = "knees" },
+  { weights = { file = "map.ply", attribute = "sticky" }, threshold = 0.75 },
+  { weights = { color = "blue" } },
   { all = true },
 ]
 stiffness = [{ frame = 1, value = 400 }, { frame = 48, value = 0, ease = "linear" }]
