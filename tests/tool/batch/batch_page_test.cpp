@@ -29,7 +29,8 @@ TEST(BatchPage, NeedsNothingButItselfWhateverTheWords) {
   batch.results[0].facts.energies = {falling(kHostileText)};
   batch.results[0].facts.stages = {{kHostileText, 2.0}, {"trace", 1.0}};
   batch.results[0].facts.made = batch.results[0].facts.skipped = {kHostileText};
-  const nlohmann::json page = checked("check_page.py", batch_page(batch, pictures_of(batch), kHostileText, kHostileText));
+  const nlohmann::json page =
+      checked("check_page.py", batch_page(batch, pictures_of(batch), kHostileText, kHostileText));
   ASSERT_TRUE(page.is_object());
   EXPECT_EQ(page["counts"]["img"], 4);
   EXPECT_EQ(page["counts"]["svg"], 1);
