@@ -27,7 +27,7 @@ PROGRAM_WORDS = ("./tool/run", "softreel", "build/tool/softreel")
 PICTURES = ("render", "sheet", "preview", "batch", "golden")
 SMALL = ["render.width=160", "render.height=90", "render.samples=1", "render.max_bounces=1", "solver.substeps=1"]
 NOT_RUN = re.compile(r"<!--\s*not run:\s*(.*?)\s*-->")
-PLACEHOLDER = re.compile(r"^(PATH|FIELD|key|body\.NAME\..*)$")
+EXAMPLE_PATH = re.compile(r"^(PATH|FIELD|key|body\.NAME\..*)$")
 
 
 class Table:
@@ -121,7 +121,7 @@ def option_problems(words, table):
             found.append("%s has no option %s" % (where, name))
         if name == "--set" and i + 1 < len(rest) and "=" in rest[i + 1]:
             path = rest[i + 1].split("=")[0].strip("'\"")
-            if not PLACEHOLDER.match(path) and not table.has_field(path):
+            if not EXAMPLE_PATH.match(path) and not table.has_field(path):
                 found.append("a shot has no field %s" % path)
     return found
 

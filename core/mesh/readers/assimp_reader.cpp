@@ -9,6 +9,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "core/mesh/readers/assimp_loading.h"
 #include "core/mesh/readers/mesh_source.h"
 #include "core/mesh/readers/text_scanner.h"
 #include "core/mesh/readers/vertex_colors.h"
@@ -132,18 +133,23 @@ Error read_error(const std::string& path, std::string_view said) {
 
 }  // namespace
 
-SurfaceMesh softreel_read_with_assimp(const std::string& path, const Log& log) {
-  Assimp::Importer importer;
+const aiScene* load_scene(Assimp::Importer& importer, const std::string& path, std::string& problem) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
-  const aiScene* scene = nullptr;
-  std::string problem;
   try {
-    scene = importer.ReadFile(path, 0);
+    const aiScene* scene = importer.ReadFile(path, 0);
     problem = importer.GetErrorString();
+    return scene;
   } catch (const std::exception& error) {
     problem = error.what();
+    return nullptr;
   }
+}
+
+SurfaceMesh softreel_read_with_assimp(const std::string& path, const Log& log) {
+  Assimp::Importer importer;
+  std::string problem;
+  const aiScene* scene = load_scene(importer, path, problem);
   if (scene == nullptr) throw read_error(path, problem);
   for (unsigned m = 0; m < scene->mNumMeshes; ++m)
     if (scene->mMeshes[m] != nullptr && (scene->mMeshes[m]->HasBones() || scene->mMeshes[m]->mNumAnimMeshes > 0)) {

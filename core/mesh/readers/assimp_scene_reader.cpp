@@ -6,10 +6,10 @@
 #include <map>
 
 #include <assimp/Importer.hpp>
-#include <assimp/config.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "core/mesh/readers/assimp_loading.h"
 #include "core/mesh/readers/mesh_source.h"
 
 namespace softreel::detail {
@@ -199,16 +199,8 @@ class SceneReader {
 
 SceneAnimation softreel_read_scene_with_assimp(const std::string& path) {
   Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
-  const aiScene* scene = nullptr;
   std::string problem;
-  try {
-    scene = importer.ReadFile(path, 0);
-    problem = importer.GetErrorString();
-  } catch (const std::exception& error) {
-    problem = error.what();
-  }
+  const aiScene* scene = load_scene(importer, path, problem);
   if (scene == nullptr)
     throw contradiction(path, "the scene cannot be read: " + problem.substr(0, problem.find_last_not_of(".\n ") + 1));
   return SceneReader(*scene, path).read();
