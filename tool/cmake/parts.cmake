@@ -20,13 +20,17 @@ function(softreel_part name found package)
   set(SOFTREEL_PART_TABLE "${SOFTREEL_PART_TABLE}\n  ${name}: ${value}  (${package}, asked: ${wanted})" PARENT_SCOPE)
 endfunction()
 
-# softreel_add_part(OWNER NAME SOURCE files... COPIES files...): the sources that include the libraries of a part. OWNER,
-# which calls them through core/base/part.h, is compiled with SOFTREEL_WITH_NAME=0|1.
+# softreel_add_part(OWNER NAME CALLER files... SOURCE files... COPIES files...): the sources that include the libraries of
+# a part. CALLER, the sources of OWNER that call them through core/base/part.h, are compiled with SOFTREEL_WITH_NAME=0|1,
+# and only they: switching a part compiles nothing else again.
 # With SOFTREEL_LAZY_PARTS they become the module softreel_part_NAME.so. That needs nothing of the program: the few other
 # sources of softreel that they call, COPIES, are compiled into it as well.
 function(softreel_add_part owner name)
-  cmake_parse_arguments(PARSE_ARGV 2 part "" "" "SOURCE;COPIES")
-  target_compile_definitions(${owner} PRIVATE SOFTREEL_WITH_${name}=${SOFTREEL_HAS_${name}})
+  cmake_parse_arguments(PARSE_ARGV 2 part "" "" "CALLER;SOURCE;COPIES")
+  foreach(caller ${part_CALLER})
+    set_property(SOURCE "${CMAKE_CURRENT_SOURCE_DIR}/${caller}" TARGET_DIRECTORY ${owner} APPEND PROPERTY
+                 COMPILE_DEFINITIONS SOFTREEL_WITH_${name}=${SOFTREEL_HAS_${name}})
+  endforeach()
   if(NOT SOFTREEL_HAS_${name})
     return()
   endif()

@@ -1,6 +1,5 @@
 # softreel_precompile(TARGET HEADERS...): the headers that most sources of a target include, compiled once, which halves
-# the time that a source takes. Sources include what they need all the same: a build with SOFTREEL_PRECOMPILE=OFF, such
-# as the one without optional parts of tool/test, finds what they forget.
+# the time that a source takes. Sources include what they need all the same: tool/test --includes finds what they forget.
 function(softreel_precompile target)
   if(NOT SOFTREEL_PRECOMPILE)
     return()
