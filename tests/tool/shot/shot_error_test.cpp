@@ -101,7 +101,7 @@ TEST_F(ShotMessage, RefusesKeysThatAreNotFinite) {
   };
   for (const std::string bad : {"nan", "inf", "-inf"}) {
     refused(pin + "keys = [{ frame = 1 }, { frame = 2, translate = [0, " + bad + ", 0] }]\n",
-            "s.toml:5:54: body.a.pin[0].keys[1].translate[1]", bad);
+            "s.toml:5:53: body.a.pin[0].keys[1].translate[1]", bad);
     refused(pin + "keys = [{ frame = " + bad + " }]\n", "s.toml:5:19: body.a.pin[0].keys[0].frame", bad);
     refused(pull + "stiffness = [{ frame = 1, value = " + bad + " }]\n", "body.a.pull[0].stiffness[0].value", bad);
     refused("[camera]\nfocal_length_mm = [{ frame = 3, value = " + bad + " }]\n", "camera.focal_length_mm[0].value",
