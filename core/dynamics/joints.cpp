@@ -28,6 +28,14 @@ std::span<const GlueBond> bonds_of(const std::vector<GlueBond>& bonds, std::int6
   return {begin, end};
 }
 
+std::span<const GlueBond> bonds_that_hold(const std::vector<GlueBond>& bonds, const Glue& glue, std::int64_t number,
+                                          double frame) {
+  const std::span<const GlueBond> known = bonds_of(bonds, number);
+  const bool holds =
+      !known.empty() && active_range(glue.active, known.front().since) == active_range(glue.active, frame);
+  return holds ? known : std::span<const GlueBond>();
+}
+
 Pieces join_pieces(const Pieces& pieces, const std::vector<Tet>& tets, const std::vector<Joint>& joints) {
   std::vector<Index> first(at(pieces.count));
   std::iota(first.begin(), first.end(), 0);

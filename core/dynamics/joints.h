@@ -24,6 +24,10 @@ std::vector<Joint> find_joints(const std::vector<Glue>& glues, const std::vector
 /// The bonds of one glue; bonds: ascending by glue.
 std::span<const GlueBond> bonds_of(const std::vector<GlueBond>& bonds, std::int64_t glue);
 
+/// Those of them that still hold at `frame`: glue that has come to another of its ranges binds anew.
+std::span<const GlueBond> bonds_that_hold(const std::vector<GlueBond>& bonds, const Glue& glue, std::int64_t number,
+                                          double frame);
+
 /// Pieces that joints connect become one; numbered as those of find_pieces. Every node belongs to a piece.
 Pieces join_pieces(const Pieces& pieces, const std::vector<Tet>& tets, const std::vector<Joint>& joints);
 

@@ -1,8 +1,16 @@
 #include "core/dynamics/pin_motion.h"
 
+#include <algorithm>
+
 #include "core/elasticity/element_rotation.h"
 
 namespace softreel {
+namespace {
+
+/// Over the greatest coordinate: what rounding leaves of a rigid motion, which is none.
+constexpr double kRounding = 1e-13;
+
+}  // namespace
 
 std::vector<RigidMotion> fit_rigid_motions(const Pieces& groups, std::span<const std::uint8_t> held,
                                            std::span<const Vec3> positions, std::span<const Vec3> targets) {
@@ -48,6 +56,17 @@ void follow_rigidly(const Pieces& pieces, std::span<const std::uint8_t> held, st
     rotations[e] = (motion_of(static_cast<std::size_t>(tets[e][0])).rotation * rotations[e]).normalized();
 }
 
+bool held_nodes_move(std::span<const std::uint8_t> held, std::span<const Vec3> positions,
+                     std::span<const Vec3> targets) {
+  double greatest = 0, farthest = 0;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] == 0) continue;
+    greatest = std::max({greatest, positions[i].cwiseAbs().maxCoeff(), targets[i].cwiseAbs().maxCoeff()});
+    farthest = std::max(farthest, (targets[i] - positions[i]).cwiseAbs().maxCoeff());
+  }
+  return !(farthest <= kRounding * greatest);
+}
+
 HeldMotion::HeldMotion(const std::vector<Tet>& tets, std::span<const std::uint8_t> held,
                        std::span<const Vec3> positions, std::span<const Vec3> targets)
     : clusters_(find_pieces(tets, positions.size(), held)),
@@ -56,9 +75,9 @@ HeldMotion::HeldMotion(const std::vector<Tet>& tets, std::span<const std::uint8_
       targets_(targets.begin(), targets.end()) {}
 
 bool HeldMotion::moves() const {
-  for (std::size_t i = 0; i < start_.size(); ++i)
-    if (clusters_.of_node[i] >= 0 && start_[i] != targets_[i]) return true;
-  return false;
+  std::vector<std::uint8_t> held;
+  for (const Index cluster : clusters_.of_node) held.push_back(cluster >= 0 ? 1 : 0);
+  return held_nodes_move(held, start_, targets_);
 }
 
 std::vector<Vec3> HeldMotion::at(double share) const {

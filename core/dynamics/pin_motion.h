@@ -27,6 +27,10 @@ std::vector<RigidMotion> fit_rigid_motions(const Pieces& groups, std::span<const
 void follow_rigidly(const Pieces& pieces, std::span<const std::uint8_t> held, std::span<const Vec3> targets,
                     const std::vector<Tet>& tets, std::span<Vec3> positions, std::span<Quaternion> rotations);
 
+/// False if every held node is at its target, but for what rounding leaves of a rigid motion.
+bool held_nodes_move(std::span<const std::uint8_t> held, std::span<const Vec3> positions,
+                     std::span<const Vec3> targets);
+
 /// The way of held nodes from their positions to their targets, for load stepping: each cluster of them that elements
 /// connect turns and moves as a whole, and what its rigid motion leaves over grows linearly. A pin that turns does not
 /// shrink on the way.
@@ -35,8 +39,7 @@ class HeldMotion {
   HeldMotion(const std::vector<Tet>& tets, std::span<const std::uint8_t> held, std::span<const Vec3> positions,
              std::span<const Vec3> targets);
 
-  /// False if every held node is at its target.
-  bool moves() const;
+  bool moves() const;  ///< held_nodes_move at the start
   /// Places of the held nodes after `share` of the way; exactly the targets at 1. Zero elsewhere.
   std::vector<Vec3> at(double share) const;
 

@@ -128,7 +128,7 @@ std::vector<GlueBond> Simulator::Parts::bonds_at(double frame) const {
   for (std::size_t g = 0; g < model.glues.size(); ++g) {
     if (!is_sticking(model.glues[g], frame)) continue;
     const auto number = static_cast<std::int64_t>(g);
-    const std::span<const GlueBond> known = bonds_of(state.bonds, number);
+    const std::span<const GlueBond> known = bonds_that_hold(state.bonds, model.glues[g], number, frame);
     bonds.insert(bonds.end(), known.begin(), known.end());
     if (!known.empty()) continue;
     const std::vector<GlueBond> made = bind_glue(model.glues[g], number, glued, state.positions, frame);
@@ -175,7 +175,7 @@ std::string Simulator::Parts::find_stiff_glue(double frame) const {
     const Glue& glue = model.glues[g];
     if (glue.stiffness.keys.empty() || !is_sticking(glue, frame)) continue;
     const auto number = static_cast<std::int64_t>(g);
-    const std::span<const GlueBond> known = bonds_of(state.bonds, number);
+    const std::span<const GlueBond> known = bonds_that_hold(state.bonds, glue, number, frame);
     const std::vector<GlueBond> made =
         known.empty() ? bind_glue(glue, number, glued, state.positions, frame) : std::vector<GlueBond>{};
     double firm = 0;

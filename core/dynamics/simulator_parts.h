@@ -91,7 +91,8 @@ struct Simulator::Parts {
   bool has_grabs() const;
   /// What pins and pulls grab once the body has come to `frame` in the present state.
   Grabs grabs_at(double frame) const;
-  /// The bonds of the glues that stick at `frame`: those of the state, and new ones for glue that starts there.
+  /// The bonds of the glues that stick at `frame`: those of the state, and new ones for glue that starts there
+  /// or comes to its next range.
   std::vector<GlueBond> bonds_at(double frame) const;
   /// Makes pieces, matrix and multigrid anew if they are not for these bonds. What is made depends on nothing else.
   void join(const std::vector<GlueBond>& bonds);

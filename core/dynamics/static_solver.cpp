@@ -6,6 +6,7 @@
 
 #include "core/dynamics/flexible_gmres.h"
 #include "core/dynamics/linear_system.h"
+#include "core/dynamics/pin_motion.h"
 #include "core/dynamics/rigid_modes.h"
 
 namespace softreel {
@@ -115,6 +116,7 @@ void StaticSolver::evaluate(StaticState& state) {
   for (const ActivePull& pull : pulls_) state.energy += pull_energy(pull, state.positions);
   terms += std::abs(state.energy);
   state.energy_noise = 100 * std::numeric_limits<double>::epsilon() * terms;
+  if (potential_ != nullptr) state.energy_noise += potential_->energy_noise(state.positions);
   measure_scales(state);
   state.residual = std::sqrt(dot(state.forces, state.forces));
 }
@@ -268,10 +270,23 @@ bool StaticSolver::find_direction(const StaticState& state, double tolerance, st
   eliminate_held(parts_.matrix, held_, parts_.threads);
   const int all = parts_.params.max_iterations;
   unstable_ = !solve_direction(state, tolerance, std::min(all, kIndefiniteIterations), direction);
-  if (!unstable_) return true;
-  // Again, because a solve that meets negative curvature may have replaced the cycle by one of its own matrix.
+  return !unstable_ || find_stable_direction(state, tolerance, direction);
+}
+
+/// That by the positive part. Its cycle is made again, because a solve that meets negative curvature may have replaced
+/// it by one of its own matrix.
+bool StaticSolver::find_stable_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction) {
+  unstable_ = true;
   precondition(state);
-  return solve_direction(state, tolerance, all, direction);
+  return solve_direction(state, tolerance, parts_.params.max_iterations, direction);
+}
+
+/// One Newton step. An unfinished solve with the exact tangent may point nowhere although it descends at first: then
+/// the positive part has another try.
+bool StaticSolver::step_along(StaticState& state, double tolerance, bool has_direction, std::vector<Vec3>& direction) {
+  if (has_direction && search_line(state, direction)) return true;
+  if (unstable_ || !has_energy(parts_.params.rotation)) return false;
+  return find_stable_direction(state, tolerance, direction) && search_line(state, direction);
 }
 
 bool StaticSolver::improves(const StaticState& from, const StaticState& to, double step, double slope) const {
@@ -313,13 +328,15 @@ bool StaticSolver::search_line(StaticState& state, std::span<const Vec3> directi
 bool StaticSolver::move_held(StaticState& state, std::span<const Vec3> targets) {
   const std::size_t n = state.positions.size();
   std::vector<Vec3> moves(n, Vec3::Zero()), right_side(n), change(n, Vec3::Zero());
-  bool moved = false;
   for (std::size_t i = 0; i < n; ++i)
-    if (held_[i] != 0) {
-      moves[i] = targets[i] - state.positions[i];
-      moved = moved || !moves[i].isZero(0);
-    }
-  if (!moved) return true;
+    if (held_[i] != 0) moves[i] = targets[i] - state.positions[i];
+  if (!held_nodes_move(held_, state.positions, targets)) {
+    const bool rounded = std::any_of(moves.begin(), moves.end(), [](const Vec3& move) { return !move.isZero(0); });
+    for (std::size_t i = 0; i < n; ++i)
+      if (held_[i] != 0) state.positions[i] = targets[i];
+    if (rounded) evaluate(state);
+    return std::isfinite(state.residual);
+  }
   assemble(state, Curvature::PositivePart);
   multiply(parts_.matrix, moves, right_side, parts_.threads);
   for (std::size_t i = 0; i < n; ++i) {
@@ -360,7 +377,7 @@ SolveReport StaticSolver::solve(StaticState& state, std::span<const Vec3> target
         std::clamp(std::max(0.1 * relative, 0.3 * tolerance / relative), kBestLinearTolerance, kWorstLinearTolerance);
     const bool has_direction = find_direction(state, linear, direction);
     if (has_direction && is_negligible(direction, state.positions)) return finish(SolveStatus::RoundOff);
-    if (!has_direction || !search_line(state, direction))
+    if (!step_along(state, linear, has_direction, direction))
       return finish(state.residual <= 100 * state.round_off ? SolveStatus::RoundOff : SolveStatus::Breakdown);
   }
   return finish(state.residual <= tolerance * state.scale ? SolveStatus::Converged : SolveStatus::MaxIterations);

@@ -48,6 +48,8 @@ class StaticSolver {
   std::vector<Vec3> forces_at(std::vector<Vec3> positions, std::vector<Quaternion> rotations);
   bool find_direction_without_energy(const StaticState& state, std::vector<Vec3>& direction);
   bool find_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction);
+  bool find_stable_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction);
+  bool step_along(StaticState& state, double tolerance, bool has_direction, std::vector<Vec3>& direction);
   StaticState moved(const StaticState& state, std::span<const Vec3> direction, double step);
   bool search_line(StaticState& state, std::span<const Vec3> direction);
   bool move_held(StaticState& state, std::span<const Vec3> targets);

@@ -1,5 +1,9 @@
 #include "core/dynamics/step_potential.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "core/dynamics/linear_system.h"
 
 namespace softreel {
@@ -20,6 +24,19 @@ double StepPotential::evaluate(std::span<const Vec3> positions, std::span<Vec3> 
     energy += 0.5 * moves[i].dot(product[i]);
   }
   return energy;
+}
+
+double StepPotential::energy_noise(std::span<const Vec3> positions) const {
+  if (!has_damping_stiffness()) return 0;
+  constexpr double kOtherBlocks = 2;  // those beside the diagonal, together about as large as it
+  double square = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto row = static_cast<Index>(i);
+    const double* const block = damping_stiffness.block(damping_stiffness.pattern.find(row, row));
+    const double term = std::max({block[0], block[4], block[8]}) * (positions[i] - base_positions[i]).squaredNorm();
+    square += term * term;
+  }
+  return kOtherBlocks * std::numeric_limits<double>::epsilon() * std::sqrt(square);
 }
 
 }  // namespace softreel

@@ -22,6 +22,9 @@ struct StepPotential {
   bool has_damping_stiffness() const { return !damping_stiffness.values.empty(); }
   /// Energy in J; on the way its forces on the nodes, N.
   double evaluate(std::span<const Vec3> positions, std::span<Vec3> forces, const Threads& threads) const;
+  /// About how far rounding may put that energy wrong, J. (x - base)^T D (x - base) is small for a part that moves
+  /// rigidly, but a sum of great numbers where the part is stiff.
+  double energy_noise(std::span<const Vec3> positions) const;
 };
 
 }  // namespace softreel

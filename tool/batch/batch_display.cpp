@@ -7,6 +7,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "tool/report/log_file.h"
+
 namespace softreel {
 namespace {
 
@@ -54,10 +56,12 @@ void BatchDisplay::print(const std::string& line) {
 }
 
 void BatchDisplay::info(const std::string& line) {
+  log_file().add(LogLevel::Info, line);
   if (verbosity_ == Verbosity::Normal) print(line);
 }
 
 void BatchDisplay::warn(const std::string& line) {
+  log_file().add(LogLevel::Warning, line);
   print(line);
 }
 
@@ -69,7 +73,11 @@ void BatchDisplay::begin(std::size_t jobs, double expected_seconds) {
 
 void BatchDisplay::start(std::size_t job, const std::string& label, const std::string& how, double expected_seconds) {
   running_.push_back({job, label, "starting", 0, 0, std::max(kShortestJob, expected_seconds), Clock::now()});
-  if (!is_terminal_) info(fmt::format("start   {} ({})", label, how));
+  const std::string line = fmt::format("start   {} ({})", label, how);
+  if (is_terminal_)
+    log_file().add(LogLevel::Info, line);  // it has a line of its own there
+  else
+    info(line);
 }
 
 void BatchDisplay::progress(std::size_t job, int done, int total, const std::string& note) {
@@ -90,6 +98,7 @@ void BatchDisplay::end(std::size_t job, bool for_good, bool failed, const std::s
     ended_seconds_ += one->expected_seconds;
   }
   running_.erase(one);
+  log_file().add(failed ? LogLevel::Warning : LogLevel::Info, line);
   if (failed || verbosity_ == Verbosity::Normal) print(line);
 }
 

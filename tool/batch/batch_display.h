@@ -18,7 +18,7 @@ TerminalSize terminal_size();
 
 /// On a terminal a line for each running job and one for the whole, drawn over and over, with what has ended above
 /// them; elsewhere plain lines: one when a job starts, one when it ends, one for the whole now and then. Quiet: only
-/// failures.
+/// failures. What is printed for good goes to the log file, too, whatever is shown.
 class BatchDisplay {
  public:
   BatchDisplay(Verbosity verbosity, const TerminalSize& terminal);

@@ -34,15 +34,13 @@ std::optional<Shot> read_shot(const std::string& path, const std::vector<Overrid
   }
 }
 
-/// The shot of one variant. What is wrong with a value was said in --sweep, not in --set.
+/// The shot of one variant.
 Shot read_variant(const std::string& path, std::vector<Override> overrides, const Variant& variant) {
   overrides.insert(overrides.end(), variant.values.begin(), variant.values.end());
   try {
     return load_shot(path, overrides);
   } catch (const Error& error) {
-    std::string message = error.what();
-    if (message.starts_with("--set")) message.replace(0, 5, "--sweep");
-    throw Error(error.kind(), fmt::format("{}\n  {} was not run, nor any other job.", message, path));
+    throw Error(error.kind(), fmt::format("{}\n  {} was not run, nor any other job.", error.what(), path));
   }
 }
 

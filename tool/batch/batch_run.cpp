@@ -16,6 +16,7 @@
 #include "tool/batch/job_messages.h"
 #include "tool/batch/machine.h"
 #include "tool/batch/schedule.h"
+#include "tool/report/log_file.h"
 #include "tool/stages/atomic_file.h"
 
 namespace softreel {
@@ -180,8 +181,9 @@ class BatchRun {
     display_.start(to_run_[index], job.label(), how, result.plan.seconds);
     Running& one = running_[index];
     one.start = Clock::now();
-    one.child =
-        std::make_unique<ChildProcess>(command_of(job, {"--json", "--threads", std::to_string(result.threads)}));
+    std::vector<std::string> more{"--json", "--threads", std::to_string(result.threads)};
+    if (!log_file().path().empty()) more.insert(more.end(), {"--log-file", log_file().path()});
+    one.child = std::make_unique<ChildProcess>(command_of(job, more));
   }
 
   void look_at_children() {

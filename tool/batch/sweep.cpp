@@ -183,7 +183,7 @@ std::vector<Variant> expand_sweeps(const std::vector<SweepAxis>& axes, std::size
     for (const Variant& variant : variants)
       for (const std::string& value : axis.values) {
         longer.push_back(variant);
-        longer.back().values.push_back({axis.path, value});
+        longer.back().values.push_back({axis.path, value, "--sweep"});
       }
     variants = std::move(longer);
   }

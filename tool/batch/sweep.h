@@ -21,7 +21,7 @@ SweepAxis parse_sweep(const std::string& text);
 
 /// One combination.
 struct Variant {
-  std::vector<Override> values;  ///< in the order of the axes
+  std::vector<Override> values;  ///< in the order of the axes, as given by --sweep
   std::string name;              ///< "path=value,path=value", good as a folder's name; empty where nothing is swept
 };
 

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "tool/commands/plan_estimate.h"
 #include "tool/report/version.h"
+#include "tool/shot/shot_layers.h"
 #include "tool/stages/atomic_file.h"
 #include "tool/stages/process.h"
 #include "tool/stages/scene_stage.h"
@@ -43,6 +44,16 @@ std::string checksum_of_program() {
         "sha256sum: the program was not found.\n  Install the package coreutils: nodes compare their softreel.");
   if (status != 0) throw work_error(fmt::format("sha256sum ended with status {}: {}", status, said));
   return said.substr(0, said.find(' '));
+}
+
+/// The output folder of a shot that need not be valid.
+std::string output_of(const ShotOptions& options) {
+  if (!options.output.empty()) return options.output;
+  const TomlValue document = load_layers(options.shot, {});
+  const TomlValue* output = document.find("output");
+  const TomlValue* directory = output != nullptr ? output->find("directory") : nullptr;
+  const std::string* said = directory != nullptr ? directory->text() : nullptr;
+  return said != nullptr ? *said : OutputSettings().directory;
 }
 
 std::string new_token() {
@@ -81,11 +92,35 @@ FarmedShot::FarmedShot(const FarmOptions& options, const std::string& shot) : se
   one.shot = absolute(shot);
   if (!one.output.empty()) one.output = absolute(one.output);
   if (!one.cache.empty()) one.cache = absolute(one.cache);
-  open(one);
-  find_site(one);
-  load_record();
+  const bool continues = options.status || options.retry;
+  try {
+    open(one);
+    find_site(one);
+    load_record();
+  } catch (const Error& problem) {
+    if (problem.kind() != ErrorKind::Input || !continues || !take_only_record(one)) throw;
+  }
+  if (!record_ && continues) take_only_record(one);
   if (!options.status) site_.checksum = checksum_of_program();
-  if (record_ && (options.status || options.retry)) continue_record(options, one);
+  if (record_ && continues) continue_record(options, one);
+}
+
+/// The record of a shot that can be read, or is called as it was submitted, with the submission's --set only. False
+/// unless the output folder has exactly one of this shot.
+bool FarmedShot::take_only_record(const ShotOptions& one) {
+  if (!one.sets.empty()) return false;
+  std::vector<FarmRecord> records;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(absolute(output_of(one)) + "/.farm", none)) {
+    const std::string path = entry.path().string() + "/submission.json", text = text_of(path);
+    if (text.empty()) continue;
+    FarmRecord record = parse_farm_record(text, path);
+    if (record.shot.shot == one.shot) records.push_back(std::move(record));
+  }
+  if (records.size() != 1) return false;
+  site_ = records.front().shot;
+  record_ = std::move(records.front());
+  return true;
 }
 
 void FarmedShot::continue_record(const FarmOptions& options, ShotOptions one) {

@@ -47,6 +47,7 @@ class FarmedShot {
   void continue_record(const FarmOptions& options, ShotOptions one);
   void open(const ShotOptions& options);
   void load_record();
+  bool take_only_record(const ShotOptions& one);
   void find_site(const ShotOptions& options);
   /// Of the shot as it is now: what an earlier call returned may be gone.
   ShotRun& run();

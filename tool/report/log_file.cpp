@@ -39,6 +39,7 @@ void LogFile::open(const std::string& path) {
         fmt::format("--log-file {}: cannot be opened: {}.\n  Accepted: a file in a folder that is there and "
                     "may be written. Correct the path.",
                     path, std::strerror(errno)));
+  path_ = path;
   std::setvbuf(file_, nullptr, _IOLBF, 1 << 16);
 }
 

@@ -22,10 +22,13 @@ class LogFile {
   void open(const std::string& path);
   /// "2026-11-28T13:11:33 1234 warning: LINE"; nothing where no file is open.
   void add(LogLevel level, const std::string& line);
+  /// As it was opened; empty: no file is open.
+  const std::string& path() const { return path_; }
 
  private:
   std::mutex mutex_;
   std::FILE* file_ = nullptr;
+  std::string path_;  ///< changes in `open` only, which comes before all else
 };
 
 /// That of the process.

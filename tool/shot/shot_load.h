@@ -9,10 +9,12 @@
 
 namespace softreel {
 
-/// One --set PATH=VALUE of the command line. `body.FIELD` addresses the only body of a shot.
+/// One --set PATH=VALUE of the command line, or one value of an option like it. `body.FIELD` addresses the only body of
+/// a shot.
 struct Override {
   std::string path;
-  std::string value;  ///< TOML; a bare word that is no TOML value is taken as a string
+  std::string value;             ///< TOML; a bare word that is no TOML value is taken as a string
+  std::string option = "--set";  ///< that gave it, as messages name it
 };
 
 /// Splits "path=value". Throws input_error if there is no '='.

@@ -12,7 +12,9 @@
 namespace softreel {
 namespace {
 
-const Origin kSetOrigin{"--set", 0, 0};
+Origin origin_of(const Override& one) {
+  return {one.option, 0, 0};
+}
 
 /// One step of a path: a key, or a position in a list.
 struct Step {
@@ -23,8 +25,8 @@ struct Step {
 
 Error override_error(const Override& one, const std::string& why, const std::string& accepted,
                      const std::string& next) {
-  return input_error(
-      fmt::format("--set: {} = {} is wrong because {}.\n  Accepted: {}. {}", one.path, one.value, why, accepted, next));
+  return input_error(fmt::format("{}: {} = {} is wrong because {}.\n  Accepted: {}. {}", one.option, one.path,
+                                 one.value, why, accepted, next));
 }
 
 Error path_syntax_error(const Override& one) {
@@ -133,8 +135,8 @@ TomlValue& follow(TomlValue& at, const Step& step, const Override& one, const st
                          at.array() != nullptr ? "Say which entry: " + walked + "[0]." : "Shorten the path.");
   if (TomlValue* found = at.find(step.key)) return *found;
   TomlValue made = toml_value(TomlValue::Table{});
-  made.origin = kSetOrigin;
-  at.table()->push_back({step.key, kSetOrigin, std::move(made)});
+  made.origin = origin_of(one);
+  at.table()->push_back({step.key, origin_of(one), std::move(made)});
   return at.table()->back().value;
 }
 
@@ -168,7 +170,7 @@ Override parse_override(const std::string& text) {
 }
 
 TomlValue parse_override_value(const Override& override_value) {
-  auto value = parse_toml_value(override_value.value, kSetOrigin);
+  auto value = parse_toml_value(override_value.value, origin_of(override_value));
   if (value && !std::holds_alternative<TomlDate>(value->data)) return std::move(*value);
   if (!value && !is_bare_word(override_value.value))
     throw override_error(
@@ -176,7 +178,7 @@ TomlValue parse_override_value(const Override& override_value) {
         "a value as in a shot: 0.5, true, [0, 1, 0], \"text\", or a word without quotes",
         "Put text with special characters into double quotes, and all into single quotes of the shell.");
   TomlValue word = toml_value(override_value.value);
-  word.origin = kSetOrigin;
+  word.origin = origin_of(override_value);
   return word;
 }
 

@@ -13,7 +13,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same glued bodies would give other frames.
-constexpr const char* kGlueVersion = "glued bodies 1";
+constexpr const char* kGlueVersion = "glued bodies 2";
 
 bool can_stick(const GlueSettings& glue) {
   const auto& keys = glue.stiffness.keys;

@@ -8,7 +8,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give other frames.
-constexpr const char* kSimulationVersion = "simulation 10";
+constexpr const char* kSimulationVersion = "simulation 11";
 
 void add(KeyHasher& key, const Transform& t) {
   key.add(t.translate).add(t.rotate).add(t.scale);
@@ -41,6 +41,7 @@ void add_constraints(KeyHasher& key, const BodyConstraints& constraints, double 
   for (const Glue& glue : constraints.glues) {
     const bool sticks = is_sticking(glue, frame);
     key.add(sticks);
+    if (sticks) key.add(active_range(glue.active, frame));  // it binds anew in each
     if (sticks && !glue.stiffness.keys.empty()) key.add(glue.stiffness.at(frame));
     if (sticks && glue.close_frames > 0) key.add(frame);
   }

@@ -27,6 +27,22 @@ Affine to_affine(const aiMatrix4x4& m) {
   return map;
 }
 
+bool is_finite(const Affine& map) {
+  return map.linear.allFinite() && map.offset.allFinite();
+}
+
+bool is_finite(const Vec3& v) {
+  return v.allFinite();
+}
+
+bool is_finite(const Quaternion& q) {
+  return q.coeffs().allFinite();
+}
+
+bool is_finite(const std::vector<double>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
 Error contradiction(const std::string& path, const std::string& problem) {
   return unusable_file(path, problem, "Export the scene again");
 }
@@ -48,6 +64,8 @@ class SceneReader {
   void add_node(const aiNode& node, Index parent) {
     const auto number = static_cast<Index>(to_.nodes.size());
     to_.nodes.push_back({node.mName.C_Str(), parent, to_affine(node.mTransformation)});
+    if (!is_finite(to_.nodes.back().rest))
+      throw contradiction(path_, fmt::format("the place of node '{}' is not finite", node.mName.C_Str()));
     node_of_.try_emplace(node.mName.C_Str(), number);
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
       if (node.mMeshes[m] >= from_.mNumMeshes || from_.mMeshes[node.mMeshes[m]] == nullptr)
@@ -85,8 +103,11 @@ class SceneReader {
       if (target.mNumVertices != from.mNumVertices)
         throw contradiction(path_, fmt::format("a morph target of mesh '{}' has {} vertices, the mesh {}", mesh.name,
                                                target.mNumVertices, from.mNumVertices));
-      for (unsigned v = 0; v < from.mNumVertices; ++v)
+      for (unsigned v = 0; v < from.mNumVertices; ++v) {
         displacements[v] = to_vector(target.mVertices[v]) - mesh.positions[v];
+        if (!displacements[v].allFinite())
+          throw contradiction(path_, fmt::format("vertex {} of a morph target of mesh '{}' is nowhere", v, mesh.name));
+      }
     }
     to_.meshes.push_back(std::move(mesh));
     sources_.push_back(&from);
@@ -108,6 +129,9 @@ class SceneReader {
       const auto joint = static_cast<Index>(mesh.joints.size());
       mesh.joints.push_back({find_node(bone.mName.C_Str(), fmt::format("a joint of mesh '{}'", mesh.name)),
                              to_affine(bone.mOffsetMatrix)});
+      if (!is_finite(mesh.joints.back().from_bind))
+        throw contradiction(
+            path_, fmt::format("where joint '{}' was bound to mesh '{}' is not finite", bone.mName.C_Str(), mesh.name));
       for (unsigned k = 0; k < bone.mNumWeights; ++k) {
         const aiVertexWeight& weight = bone.mWeights[k];
         if (weight.mVertexId >= from.mNumVertices || !std::isfinite(weight.mWeight))
@@ -146,24 +170,34 @@ class SceneReader {
         return Quaternion(double{key.mValue.w}, double{key.mValue.x}, double{key.mValue.y}, double{key.mValue.z})
             .normalized();
       };
-      read_keys(channel.mPositionKeys, channel.mNumPositionKeys, ticks, vector, clip, out.translation);
-      read_keys(channel.mRotationKeys, channel.mNumRotationKeys, ticks, turn, clip, out.rotation);
-      read_keys(channel.mScalingKeys, channel.mNumScalingKeys, ticks, vector, clip, out.scale);
+      const std::string node = fmt::format(" of node '{}'", channel.mNodeName.C_Str());
+      read_keys(channel.mPositionKeys, channel.mNumPositionKeys, ticks, "translation" + node, vector, clip,
+                out.translation);
+      read_keys(channel.mRotationKeys, channel.mNumRotationKeys, ticks, "rotation" + node, turn, clip, out.rotation);
+      read_keys(channel.mScalingKeys, channel.mNumScalingKeys, ticks, "scale" + node, vector, clip, out.scale);
       clip.nodes.push_back(std::move(out));
     }
     for (unsigned c = 0; c < from.mNumMorphMeshChannels; ++c) add_morphs(*from.mMorphMeshChannels[c], ticks, clip);
     to_.clips.push_back(std::move(clip));
   }
 
-  /// Keys that do not come after the one before them are left out: exporters repeat times.
+  /// Keys that do not come after the one before them are left out: exporters repeat times. What they key is only for
+  /// messages.
   template <typename Key, typename Value, typename T>
-  static void read_keys(const Key* keys, unsigned count, double ticks, const Value& value, SceneClip& clip,
-                        Samples<T>& samples) {
+  void read_keys(const Key* keys, unsigned count, double ticks, const std::string& what, const Value& value,
+                 SceneClip& clip, Samples<T>& samples) const {
     for (unsigned k = 0; k < count; ++k) {
       const double seconds = keys[k].mTime / ticks;
-      if (!std::isfinite(seconds) || (!samples.empty() && seconds <= samples.seconds.back())) continue;
+      if (!std::isfinite(seconds))
+        throw contradiction(
+            path_, fmt::format("in clip '{}', the time of key {} of the {} is not finite", clip.name, k, what));
+      if (!samples.empty() && seconds <= samples.seconds.back()) continue;
+      T sample = value(keys[k]);
+      if (!is_finite(sample))
+        throw contradiction(path_, fmt::format("in clip '{}', the value of key {} of the {}, at {:g} s, is not finite",
+                                               clip.name, k, what, seconds));
       samples.seconds.push_back(seconds);
-      samples.values.push_back(value(keys[k]));
+      samples.values.push_back(std::move(sample));
       clip.seconds = std::max(clip.seconds, seconds);
     }
   }
@@ -183,7 +217,8 @@ class SceneReader {
           if (key.mValues[k] < of_target.size()) of_target[key.mValues[k]] = key.mWeights[k];
         return of_target;
       };
-      read_keys(channel.mKeys, channel.mNumKeys, ticks, weights, clip, out.weights);
+      read_keys(channel.mKeys, channel.mNumKeys, ticks, fmt::format("morph weights of mesh '{}'", mesh.name), weights,
+                clip, out.weights);
       if (!out.weights.empty()) clip.morphs.push_back(std::move(out));
     }
   }

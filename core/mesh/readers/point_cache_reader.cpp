@@ -97,6 +97,8 @@ PointCache read_mdd(const MeshSource& source) {
   const double first = cache.seconds.front();
   for (std::size_t s = 0; s < cache.seconds.size(); ++s) {
     cache.seconds[s] -= first;
+    if (!std::isfinite(cache.seconds[s]))
+      throw broken_cache(source, fmt::format("the time of sample {} is not finite", s));
     if (s > 0 && !(cache.seconds[s] > cache.seconds[s - 1]))
       throw broken_cache(source, fmt::format("the time of sample {} does not come after that before it", s));
   }

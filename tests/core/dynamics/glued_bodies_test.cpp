@@ -183,6 +183,27 @@ TEST(GluedBodies, GlueThatStartsInTheMiddleHoldsThemWhereTheyAreAndLetsGoAgain) 
   EXPECT_TRUE(bench.simulator.state().bonds.empty());
 }
 
+TEST(GluedBodies, ARangeThatFollowsWithoutAGapBindsAnew) {
+  const auto moves_apart = [](std::vector<FrameRange> active) {
+    BodyModel model = free_cubes();
+    model.glues[0].active = std::move(active);
+    model.glues[0].distance = 0.1;
+    model.glues[0].stiffness = constant(1.0);  // so weak that they drift apart while it holds
+    Bench bench(model);
+    SimulationState start = bench.simulator.state();
+    for (std::size_t i = static_cast<std::size_t>(model.parts[1].first_node); i < start.velocities.size(); ++i)
+      start.velocities[i] = Vec3(0.2, 0, 0);
+    bench.simulator.set_state(start);
+    for (int k = 1; k <= 11; ++k) EXPECT_TRUE(bench.simulator.step(k, kStep).ok());
+    return bench.simulator.state();
+  };
+  const SimulationState one = moves_apart({{1, 20}}), two = moves_apart({{1, 10}, {11, 20}});
+  ASSERT_FALSE(two.bonds.empty());
+  for (const GlueBond& bond : one.bonds) EXPECT_EQ(bond.since, 1);
+  for (const GlueBond& bond : two.bonds) EXPECT_EQ(bond.since, 11);
+  EXPECT_GT(distance(one, two), 1e-9) << "the spring of the second range has no stretch yet";
+}
+
 TEST(GluedBodies, WithoutStiffnessIsWithoutGlue) {
   BodyModel with = free_cubes();
   with.glues[0].stiffness = constant(0.0);
@@ -203,7 +224,7 @@ TEST(GluedBodies, ResumeFromAnyStateWithTheSameBits) {
     SolverParams params;
     params.integrator = integrator;
     BodyModel model = free_cubes();
-    model.glues[0].active = {{3, 6}, {8, 20}};
+    model.glues[0].active = {{3, 6}, {7, 8}, {9.5, 20}};
     model.glues[0].close_frames = 4;
     model.glues[0].distance = 0.1;
     Bench through(model, params);

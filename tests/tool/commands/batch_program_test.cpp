@@ -1,5 +1,6 @@
 /// Batches that nothing disturbs: what runs, what is left out, what is refused, and the reports.
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -149,9 +150,34 @@ TEST(Batch, RefusesBeforeAnythingRuns) {
   refused("shot.toml --sweep material.sift.youngs_modulus=1,2", {"--sweep", "soft"});
   refused("shot.toml --sweep material.soft.poisson_ratio=0.3,0.7", {"--sweep", "0.7", "0 to 0.499"});
   refused("shot.toml --set body.ball.tetz=5", {"tets"});
+  refused("shot.toml --set material.soft.density=-5 --sweep body.tets=700,800",
+          {"softreel: --set: material.soft.density = -5", "above 0"});
+  refused("shot.toml --set material.sift.density=5 --sweep body.tets=700,800",
+          {"softreel: --set: material.sift", "soft"});
+  refused("shot.toml --set material.soft.density=5 --sweep body.tets=700,-8",
+          {"softreel: --sweep: body.ball.tets = -8"});
   refused("shot.toml --set body.tets=900 --sweep body.tets=700,800", {"--set"});
   refused("shot.toml --memory nan", {"--memory"});
   refused("shot.toml --jobs 0", {"--jobs"});
+}
+
+TEST(Batch, TheLogFileHasTheMessagesOfTheBatchAndOfItsJobs) {
+  const std::string folder = two_shots("logged");
+  std::string bad = sphere_shot();
+  bad.replace(bad.find("sphere.obj"), 10, "nowhere.obj");
+  bad.replace(bad.find("\"ball\""), 6, "\"bad\"");
+  write_text(folder + "/bad.toml", bad);
+  EXPECT_EQ(batch(folder, "shot.toml second.toml bad.toml --output out --frames 1 --quiet --log-file all.log").status,
+            1);
+  std::istringstream lines(read_text(folder + "/all.log"));
+  std::set<std::string> processes;
+  std::string all;
+  for (std::string time, process, rest; lines >> time >> process && std::getline(lines, rest); all += rest + "\n")
+    if (time.starts_with("20")) processes.insert(process);
+  EXPECT_EQ(processes.size(), 3U) << "the batch and the two jobs that ran";
+  for (const char* part : {"info: batch: 3 jobs", "info: done    ball", "info: done    second", "debug: stage",
+                           "warning: FAILED  bad", "nowhere.obj", "error: 1 of 3 jobs failed"})
+    EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
 }
 
 TEST(Batch, AJobLargerThanAllMemoryRunsAloneWithANote) {

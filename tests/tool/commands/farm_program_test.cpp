@@ -253,6 +253,19 @@ TEST_F(Farm, WritesATemplateWithoutAskingSlurm) {
   for (const json& task : tasks(0)) EXPECT_EQ(task["state"], "done") << "by whom it was made does not matter";
 }
 
+TEST_F(Farm, AStatusTakesTheValuesOfTheSubmissionWhereTheShotNeedsThem) {
+  start("recorded");
+  std::string shot = read_text(folder_ + "/shot.toml");
+  shot.replace(shot.find("\"soft\""), 6, "\"sorft\"");  // the body's material, as yet unknown
+  write_text(folder_ + "/shot.toml", shot);
+  EXPECT_EQ(farm("--status").status, 2) << "nothing was submitted";
+  ASSERT_EQ(farm("--engine openjd --set body.material=soft --set shot.name=other").status, 0);
+  for (const json& task : tasks(0)) EXPECT_EQ(task["state"], "waiting") << task;
+  const Outcome status = farm("--status");
+  EXPECT_NE(status.out.find("farm: other in " + folder_ + "/out"), std::string::npos) << status.out;
+  EXPECT_EQ(farm("--status --set body.material=hard").status, 2) << "what is given now counts";
+}
+
 TEST_F(Farm, MistakesAreSaidBeforeAnythingIsSubmitted) {
   start("mistakes");
   for (const char* options :

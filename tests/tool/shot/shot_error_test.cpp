@@ -92,6 +92,23 @@ TEST_F(ShotMessage, RefusesFramesAndKeysOutOfOrder) {
   expect_parts(message(body("[golden]\nframes = [3, 3]\n")), {"s.toml:4:14: golden.frames[1] = 3"});
 }
 
+TEST_F(ShotMessage, RefusesKeysThatAreNotFinite) {
+  const std::string pin = "[[body.a.pin]]\nselect = { all = true }\n",
+                    pull = "[[body.a.pull]]\nselect = { all = true }\n";
+  const auto refused = [&](const std::string& lines, const std::string& field, const std::string& bad) {
+    const std::string named = field + " = " + bad;
+    expect_parts(message(body(lines)), {named.c_str(), "it is not finite"});
+  };
+  for (const std::string bad : {"nan", "inf", "-inf"}) {
+    refused(pin + "keys = [{ frame = 1 }, { frame = 2, translate = [0, " + bad + ", 0] }]\n",
+            "s.toml:5:53: body.a.pin[0].keys[1].translate[1]", bad);
+    refused(pin + "keys = [{ frame = " + bad + " }]\n", "s.toml:5:19: body.a.pin[0].keys[0].frame", bad);
+    refused(pull + "stiffness = [{ frame = 1, value = " + bad + " }]\n", "body.a.pull[0].stiffness[0].value", bad);
+    refused("[camera]\nfocal_length_mm = [{ frame = 3, value = " + bad + " }]\n", "camera.focal_length_mm[0].value",
+            bad);
+  }
+}
+
 TEST_F(ShotMessage, NamesWhatIsMissing) {
   expect_parts(message("[body.a]\n"), {"s.toml:1:1: body.a.mesh = (nothing)", "it must be given", "Add a line mesh"});
   expect_parts(message("[shot]\nfps = 24\n"), {"body.NAME", "it must be given"});

@@ -56,6 +56,18 @@ TEST(FrameKey, WhatIsSwitchedOffHasNoValue) {
   EXPECT_EQ(first_changed([](Shot&, BodyConstraints& m) { m.pins[0].active = {{1, 30}}; }), 31);
 }
 
+TEST(FrameKey, GlueThatBindsAnewInAnotherRangeChangesTheFramesFromThereOn) {
+  const auto keys = [](std::vector<FrameRange> active) {
+    BodyConstraints constraints = simple_constraints();
+    constraints.glues.emplace_back().active = std::move(active);
+    return simulation_keys(simple_shot(), {}, constraints, "filled", "materials");
+  };
+  const std::vector<StageKey> one = keys({{1, 60}}), two = keys({{1, 10}, {11, 60}});
+  EXPECT_EQ(one, keys({})) << "always";
+  EXPECT_EQ(one[9], two[9]);
+  EXPECT_NE(one[10], two[10]);
+}
+
 TEST(FrameKey, ALongerShotKeepsItsFrames) {
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.settings.last_frame = 90; }), 0);
 }

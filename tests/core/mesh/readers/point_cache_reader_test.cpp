@@ -81,6 +81,9 @@ TEST(PointCacheReader, RefusesWhatIsBroken) {
   EXPECT_NE(refusal("a.pc2", "POINTCACHE").find("POINTCACHE2"), std::string::npos);
   EXPECT_NE(refusal("a.pc2", pc2(0, 3)).find("apart"), std::string::npos);
   EXPECT_NE(refusal("a.mdd", mdd({0, 2, 1})).find("sample 2"), std::string::npos);
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN(), kFar = std::numeric_limits<float>::infinity();
+  EXPECT_NE(refusal("a.mdd", mdd({kNone})).find("sample 0 is not finite"), std::string::npos);
+  EXPECT_NE(refusal("a.mdd", mdd({0, 1, kFar})).find("sample 2 is not finite"), std::string::npos);
   EXPECT_NE(refusal("a.pc2", pc2(1, 0)).find("0 samples"), std::string::npos);
   std::string huge = good;
   const std::int32_t many = 2000000000;

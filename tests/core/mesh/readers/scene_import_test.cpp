@@ -1,6 +1,9 @@
 #include "core/mesh/readers/scene_import.h"
 
 #include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
 #include <numbers>
 
 #include "core/mesh/readers/mesh_import.h"
@@ -97,6 +100,45 @@ TEST(SceneImport, WarnsOfCurvesThatAssimpDoesNotPassOn) {
   import_scene(path, warnings.log());
   ASSERT_EQ(warnings.lines.size(), 1u);
   EXPECT_NE(warnings.lines[0].find("STEP"), std::string::npos);
+}
+
+/// The file with the float `before` of its buffer, the first of this value from the end, replaced by one that is not
+/// finite.
+std::string with_bad_float(const TemporaryFolder& folder, const std::string& scene, float before, float after) {
+  const std::string path = folder.path(scene.substr(scene.find_last_of('/') + 1));
+  std::filesystem::path buffer = std::filesystem::path(path).replace_extension(".bin");
+  std::ifstream in(buffer, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  std::string old(sizeof(float), '\0'), bad(sizeof(float), '\0');
+  std::memcpy(old.data(), &before, sizeof(float));
+  std::memcpy(bad.data(), &after, sizeof(float));
+  const std::size_t at = bytes.rfind(old);
+  EXPECT_NE(at, std::string::npos);
+  bytes.replace(at, sizeof(float), bad);
+  folder.write(buffer.filename().string(), bytes);
+  return path;
+}
+
+TEST(SceneImport, RefusesKeysThatAreNotFiniteWithPlaceAndTime) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinite = std::numeric_limits<float>::infinity();
+  const auto refusal = [](const std::string& path) -> std::string {
+    try {
+      import_scene(path, Log{});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::Input);
+      return error.what();
+    }
+    return "no error";
+  };
+  for (const float bad : {nan, infinite}) {
+    const TemporaryFolder folder;
+    const std::string turn = refusal(with_bad_float(folder, testing::write_jaw(folder.path("")), 0.70710678F, bad));
+    for (const char* part : {"jaw.gltf", "clip 'open'", "key 1 of the rotation of node 'jaw'", "at 1 s", "Export"})
+      EXPECT_NE(turn.find(part), std::string::npos) << turn;
+    const std::string weight = refusal(with_bad_float(folder, testing::write_morph(folder.path("")), 0.5F, bad));
+    for (const char* part : {"morph.gltf", "clip 'lift'", "key 1 of the morph weights of mesh 'face", "at 1 s"})
+      EXPECT_NE(weight.find(part), std::string::npos) << weight;
+  }
 }
 
 TEST(SceneImport, RefusesWhatIsNoScene) {
