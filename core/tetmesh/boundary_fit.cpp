@@ -39,7 +39,7 @@ double cubed(double x) {
 /// The boundary nodes and their stars, and the elements while they are fitted.
 class BoundaryFit::Fit {
  public:
-  Fit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples, const BoundaryFitParams& params,
+  Fit(StuffedMesh& stuffed, const TriangleTree& tree, const SurfaceSamples& samples, const BoundaryFitParams& params,
       const Threads& threads, FitMemory* memory)
       : mesh_(stuffed.mesh),
         tree_(tree),
@@ -55,6 +55,7 @@ class BoundaryFit::Fit {
     sample_faces_.assign(samples_.size(), -1);
     probes_.resize(stars_.nodes.size() + stars_.edges.size() + stars_.faces.size());
     std::vector<Vec3> before;
+    before.reserve(stars_.nodes.size());
     for (const Index node : stars_.nodes) before.push_back(position(node));
     draw_to_surface();
     moved_.assign(stars_.nodes.size(), true);
@@ -73,6 +74,7 @@ class BoundaryFit::Fit {
     find_probes();
     if (memory_ == nullptr) return;
     *memory_ = {};
+    memory_->reserve(before.size());
     for (std::size_t b = 0; b < before.size(); ++b) memory_->add(before[b], position_of(b));
   }
 
@@ -82,12 +84,12 @@ class BoundaryFit::Fit {
     for (std::size_t s = 0; s < samples_.size(); ++s) {
       if (sample_distances_[s] <= squared) continue;
       const Triangle& face = stars_.faces[at(sample_faces_[s])].nodes;
-      gaps.push_back({samples_[s],
-                      nearest_on_triangle(samples_[s], position(face[0]), position(face[1]), position(face[2])), face});
+      const Vec3 x = samples_[s];
+      gaps.push_back({x, nearest_on_triangle(x, position(face[0]), position(face[1]), position(face[2])), face});
     }
     const auto add_probe = [&](std::size_t p, const Triangle& face) {
       if (probes_[p].place < 0 || probes_[p].squared <= squared) return;
-      const auto& [a, b, c] = tree_.corners()[at(probes_[p].place)];
+      const auto& [a, b, c] = tree_.corners(probes_[p].place);
       const Vec3 x = probe_point(p);
       gaps.push_back({nearest_on_triangle(x, a, b, c), x, face, true});
     };
@@ -197,6 +199,7 @@ class BoundaryFit::Fit {
       if (farthest[f] < 0 || sample_distances_[s] > sample_distances_[at(farthest[f])])
         farthest[f] = static_cast<Index>(s);
     }
+    face_samples_ = {};  // before there is a new one
     face_samples_ = CompressedList(stars_.faces.size(), [&](const auto& with) {
       std::vector<Index> seen(stars_.faces.size(), 0);
       for (std::size_t s = 0; s < samples_.size(); ++s) {
@@ -239,7 +242,7 @@ class BoundaryFit::Fit {
   Probe probe(std::size_t p) const {
     const Vec3 x = probe_point(p);
     if (probes_[p].place >= 0) {
-      const auto& [a, b, c] = tree_.corners()[at(probes_[p].place)];
+      const auto& [a, b, c] = tree_.corners(probes_[p].place);
       const double squared = (nearest_on_triangle(x, a, b, c) - x).squaredNorm();
       if (squared < near_) return {probes_[p].place, squared};
     }
@@ -264,15 +267,23 @@ class BoundaryFit::Fit {
     return most > wanted_;
   }
 
+  /// Lists the samples that the faces of a node are drawn by, face by face.
+  void take_star_samples(std::size_t b) {
+    star_samples_.clear();
+    for (const Index f : stars_.faces_of.of(b))
+      for (const Index s : face_samples_.of(at(f))) star_samples_.push_back(samples_[at(s)]);
+  }
+
   /// Sum of the sixth powers of the distances of all samples and probes of a node: mostly that of the largest. Stops
   /// where it is more than `limit`.
   double energy(std::size_t b, double limit) const {
     double sum = 0;
+    const Vec3* x = star_samples_.data();
     for (const Index f : stars_.faces_of.of(b))
-      for (const Index s : face_samples_.of(at(f))) {
-        double least = squared_distance(samples_[at(s)], f);
+      for (std::size_t s = 0; s < face_samples_.of(at(f)).size(); ++s, ++x) {
+        double least = squared_distance(*x, f);
         if (least > near_)
-          for (const Index g : stars_.faces_of.of(b)) least = std::min(least, squared_distance(samples_[at(s)], g));
+          for (const Index g : stars_.faces_of.of(b)) least = std::min(least, squared_distance(*x, g));
         sum += cubed(least);
         if (sum > limit) return sum;
       }
@@ -294,16 +305,17 @@ class BoundaryFit::Fit {
     visit_probes(b, [&](std::size_t p, double share) {
       if (probes_[p].place < 0) return;
       const Vec3 x = probe_point(p);
-      const auto& [u, v, w] = tree_.corners()[at(probes_[p].place)];
+      const auto& [u, v, w] = tree_.corners(probes_[p].place);
       add(nearest_on_triangle(x, u, v, w) - x, share);
     });
     const Index own = stars_.nodes[b];
+    const Vec3* x = star_samples_.data();
     for (const Index f : stars_.faces_of.of(b)) {
       const auto& [i, j, k] = stars_.faces[at(f)].nodes;
-      for (const Index s : face_samples_.of(at(f))) {
-        const Vec3 foot = nearest_on_triangle(samples_[at(s)], position(i), position(j), position(k));
+      for (std::size_t s = 0; s < face_samples_.of(at(f)).size(); ++s, ++x) {
+        const Vec3 foot = nearest_on_triangle(*x, position(i), position(j), position(k));
         const double share = barycentric_share(foot, own, stars_.faces[at(f)].nodes);
-        if (share > 0) add(samples_[at(s)] - foot, share);
+        if (share > 0) add(*x - foot, share);
       }
     }
     matrix.diagonal().array() += kDamping * matrix.trace() + 1e-300;
@@ -320,6 +332,7 @@ class BoundaryFit::Fit {
   }
 
   bool relax(std::size_t b) {
+    take_star_samples(b);
     Vec3 step = newton_step(b);
     const double longest = 0.5 * longest_edge(b);
     if (step.norm() > longest) step *= longest / step.norm();
@@ -346,7 +359,7 @@ class BoundaryFit::Fit {
 
   TetMesh& mesh_;
   const TriangleTree& tree_;
-  const std::vector<Vec3>& samples_;
+  const SurfaceSamples& samples_;
   const BoundaryFitParams& params_;
   const Threads& threads_;
   FitMemory* memory_;  ///< may be null
@@ -355,11 +368,12 @@ class BoundaryFit::Fit {
   std::vector<Index> sample_faces_;       ///< per sample: the nearest face
   std::vector<double> sample_distances_;  ///< to it, squared
   CompressedList face_samples_;
+  std::vector<Vec3> star_samples_;  ///< of the node that is being moved, see take_star_samples
   std::vector<Probe> probes_;
   std::vector<bool> moved_;  ///< per boundary node: since the last search
 };
 
-BoundaryFit::BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples,
+BoundaryFit::BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const SurfaceSamples& samples,
                          const BoundaryFitParams& params, const Threads& threads, FitMemory* memory)
     : fit_(std::make_unique<Fit>(stuffed, tree, samples, params, threads, memory)) {
   fit_->run();
@@ -375,7 +389,7 @@ void fit_boundary(StuffedMesh& stuffed, const SurfaceMesh& surface, const Bounda
                   const Threads& threads) {
   if (stuffed.mesh.tets.empty()) return;
   const TriangleTree tree(surface.positions, surface.triangles);
-  const std::vector<Vec3> samples = sample_surface(surface, tree.order(), 0.5 * stuffed.mesh.lattice.spacing);
+  const SurfaceSamples samples(surface, tree.order(), 0.5 * stuffed.mesh.lattice.spacing);
   const BoundaryFit fit(stuffed, tree, samples, params, threads);
 }
 

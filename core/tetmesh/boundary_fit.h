@@ -8,6 +8,7 @@
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/fit_memory.h"
 #include "core/tetmesh/isosurface_stuffing.h"
+#include "core/tetmesh/surface_samples.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
@@ -36,7 +37,7 @@ struct BoundaryGap {
 class BoundaryFit {
  public:
   /// Fits. tree: of the surface; samples: points of it; memory: read, then replaced. All are borrowed while this lives.
-  BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const std::vector<Vec3>& samples,
+  BoundaryFit(StuffedMesh& stuffed, const TriangleTree& tree, const SurfaceSamples& samples,
               const BoundaryFitParams& params, const Threads& threads, FitMemory* memory = nullptr);
   ~BoundaryFit();
   BoundaryFit(const BoundaryFit&) = delete;

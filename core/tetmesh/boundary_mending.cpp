@@ -279,10 +279,9 @@ class MendingRound {
   BoundaryMending done_;
 };
 
-}  // namespace
-
-std::vector<BoundaryFace> find_surface_faces(const StuffedMesh& stuffed) {
-  std::vector<BoundaryFace> faces;
+/// Calls visit(tetrahedron, local face, element) for the faces whose nodes may all lie on the boundary.
+template <typename Visit>
+void visit_surface_faces(const StuffedMesh& stuffed, const Visit& visit) {
   for (std::size_t e = 0; e < stuffed.mesh.tets.size(); ++e) {
     const Tet& tet = stuffed.mesh.tets[e];
     std::array<bool, 4> surface;
@@ -291,14 +290,23 @@ std::vector<BoundaryFace> find_surface_faces(const StuffedMesh& stuffed) {
       surface[k] = stuffed.on_surface[at(tet[k])] != 0;
       count += surface[k] ? 1 : 0;
     }
-    if (count < 3) continue;
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (count == 3 && surface[k]) continue;
-      Triangle face{tet[(k + 1) % 4], tet[(k + 2) % 4], tet[(k + 3) % 4]};
-      std::sort(face.begin(), face.end());
-      faces.push_back({face, static_cast<Index>(e)});
-    }
+    for (std::size_t k = 0; k < 4 && count >= 3; ++k)
+      if (count == 4 || !surface[k]) visit(tet, k, static_cast<Index>(e));
   }
+}
+
+}  // namespace
+
+std::vector<BoundaryFace> find_surface_faces(const StuffedMesh& stuffed) {
+  std::size_t count = 0;
+  visit_surface_faces(stuffed, [&](const Tet&, std::size_t, Index) { ++count; });
+  std::vector<BoundaryFace> faces;
+  faces.reserve(count);
+  visit_surface_faces(stuffed, [&](const Tet& tet, std::size_t k, Index element) {
+    Triangle face{tet[(k + 1) % 4], tet[(k + 2) % 4], tet[(k + 3) % 4]};
+    std::sort(face.begin(), face.end());
+    faces.push_back({face, element});
+  });
   std::sort(faces.begin(), faces.end(), [](const BoundaryFace& a, const BoundaryFace& b) {
     return a.nodes != b.nodes ? a.nodes < b.nodes : a.element < b.element;
   });
@@ -308,6 +316,7 @@ std::vector<BoundaryFace> find_surface_faces(const StuffedMesh& stuffed) {
     if (end == i + 1) faces[kept++] = faces[i];
   }
   faces.resize(kept);
+  faces.shrink_to_fit();
   return faces;
 }
 

@@ -40,6 +40,7 @@ void CosineRange::add(const std::array<Vec3, 4>& x) {
 
 BoundaryStars::BoundaryStars(const StuffedMesh& stuffed)
     : faces(find_surface_faces(stuffed)), numbers(stuffed.mesh.nodes.size(), -1) {
+  edges.reserve(3 * faces.size());
   for (const BoundaryFace& face : faces)
     for (std::size_t k = 0; k < 3; ++k) {
       const Index a = face.nodes[k], b = face.nodes[(k + 1) % 3];
@@ -48,6 +49,7 @@ BoundaryStars::BoundaryStars(const StuffedMesh& stuffed)
     }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  edges.shrink_to_fit();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (numbers[i] < 0) continue;
     numbers[i] = static_cast<Index>(nodes.size());

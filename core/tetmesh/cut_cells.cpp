@@ -111,6 +111,7 @@ LatticeSurface make_lattice_surface(const SurfaceMesh& surface, const SurfacePar
   for (const SurfacePart& part : parts.parts) volume += part.volume;
   if (volume < 0)
     for (Triangle& triangle : result.triangles) std::swap(triangle[1], triangle[2]);
+  result.points.reserve(surface.positions.size());
   for (const Vec3& p : surface.positions) result.points.push_back((p - frame.origin) * (2.0 / frame.spacing));
   std::vector<Triangle> welded = welded_triangles(surface);
   if (volume < 0)
@@ -144,7 +145,10 @@ std::vector<CellCut> cut_cells(const LatticeSurface& surface, const Threads& thr
     for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
       if (surface.used[at(t)]) cut_triangle(surface, t, candidates, chunks[static_cast<std::size_t>(begin / kGrain)]);
   });
+  std::size_t count = 0;
+  for (const auto& chunk : chunks) count += chunk.size();
   std::vector<CellCut> cuts;
+  cuts.reserve(count);
   for (auto& chunk : chunks) {
     cuts.insert(cuts.end(), chunk.begin(), chunk.end());
     std::vector<CellCut>().swap(chunk);

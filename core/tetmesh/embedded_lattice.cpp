@@ -1,11 +1,12 @@
 #include "core/tetmesh/embedded_lattice.h"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/mesh/disjoint_sets.h"
 #include "core/tetmesh/cell_parts.h"
+#include "core/tetmesh/number_table.h"
 
 namespace softreel {
 namespace {
@@ -19,16 +20,22 @@ std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// A lattice tetrahedron of the cover: its triangles and its copies.
+/// A lattice tetrahedron of the cover: its triangles and its copies, one for each of its parts.
 struct CoverCell {
   BccCell cell;
-  std::uint64_t order = 0;          ///< along the lattice
-  std::size_t cuts = 0, count = 0;  ///< its cuts [cuts, cuts + count)
-  CellParts parts;
-  Index first_copy = 0;
+  std::uint64_t order = 0;    ///< along the lattice
+  Index cuts = 0, count = 0;  ///< its cuts [cuts, cuts + count)
+  Index first_copy = 0, copies = 0;
+  std::array<Index, 4> corner_parts{};  ///< CellParts::corners
 
   /// The copy that is inside at corner k, -1 if none is.
-  Index corner_copy(std::size_t k) const { return parts.corners[k] < 0 ? -1 : first_copy + parts.corners[k]; }
+  Index corner_copy(std::size_t k) const { return corner_parts[k] < 0 ? -1 : first_copy + corner_parts[k]; }
+
+  /// Its own of things that there are one of for each cut.
+  template <typename OfCuts>
+  auto own(OfCuts& of_cuts) const {
+    return std::span(of_cuts).subspan(at(cuts), at(count));
+  }
 };
 
 /// Cells, copies and nodes on their way to a mesh.
@@ -56,13 +63,21 @@ class Cover {
   }
 
  private:
-  Index copies() const { return cells_.empty() ? 0 : cells_.back().first_copy + cells_.back().parts.count; }
+  Index copies() const { return cells_.empty() ? 0 : cells_.back().first_copy + cells_.back().copies; }
+
+  Index find_cell(const BccCell& cell) const {
+    return table_.find(cell_key(cell), [&](Index number) { return cells_[at(number)].cell == cell; });
+  }
+  void list_cell(std::size_t number) {
+    table_.insert(static_cast<Index>(number), [&](Index n) { return cell_key(cells_[at(n)].cell); });
+  }
 
   /// Cells with triangles, and those between them that have a corner inside.
   void find_cells() {
+    reserve_cells();
     for (std::size_t begin = 0, end = 0; begin < cuts_.size(); begin = end) {
       while (end < cuts_.size() && cuts_[end].cell == cuts_[begin].cell) ++end;
-      add_cell(cell_of_key(cuts_[begin].cell), begin, end - begin);
+      add_cell(cell_of_key(cuts_[begin].cell), static_cast<Index>(begin), static_cast<Index>(end - begin));
     }
     for (const LatticeNode& node : inside_.nodes()) {
       // Without a triangle all corners of a cell are inside, cube centres too; but round an open surface any may be.
@@ -73,31 +88,51 @@ class Cover {
     for (CoverCell& cell : cells_)
       cell.order = kCellTypes * static_cast<std::uint64_t>(lattice_nodes_.find(cell.cell.center)) + cell.cell.type;
     std::sort(cells_.begin(), cells_.end(), [](const CoverCell& a, const CoverCell& b) { return a.order < b.order; });
-    numbers_ = KeyIndex();
-    for (const CoverCell& cell : cells_) numbers_.insert(cell_key(cell.cell));
+    table_.clear();
+    for (std::size_t c = 0; c < cells_.size(); ++c) list_cell(c);
   }
 
-  void add_cell(const BccCell& cell, std::size_t cuts, std::size_t count) {
-    if (!numbers_.insert(cell_key(cell)).second) return;
-    cells_.push_back({cell, 0, cuts, count, {}, 0});
+  /// A closed surface has at most this many cells: both centres of those without a triangle are inside, and there are
+  /// 24 cells round a centre.
+  void reserve_cells() {
+    if (!surface_.closed) return;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < cuts_.size(); ++i) count += i == 0 || cuts_[i].cell != cuts_[i - 1].cell ? 1 : 0;
+    for (const LatticeNode& node : inside_.nodes()) count += (node[0] & 1) != 0 ? 12 : 0;
+    cells_.reserve(count);
+  }
+
+  void add_cell(const BccCell& cell, Index cuts, Index count) {
+    if (find_cell(cell) >= 0) return;
+    cells_.push_back({cell, 0, cuts, count, 0, 0, {}});
+    list_cell(cells_.size() - 1);
     for (const LatticeNode& corner : cell_corners(cell)) lattice_nodes_.insert(corner);
   }
 
   void find_parts(const Threads& threads) {
     cut_copies_.resize(cuts_.size());
-    threads.for_chunks(static_cast<std::int64_t>(cells_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    const auto n = static_cast<std::int64_t>(cells_.size());
+    std::vector<std::vector<double>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
+    threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      std::vector<double>& fills = chunks[static_cast<std::size_t>(begin / kGrain)];
       for (auto c = static_cast<std::size_t>(begin); c < static_cast<std::size_t>(end); ++c) {
         CoverCell& cell = cells_[c];
-        cell.parts = find_cell_parts(surface_, inside_, cell.cell, std::span(cuts_).subspan(cell.cuts, cell.count),
-                                     std::span(cut_copies_).subspan(cell.cuts, cell.count));
+        const CellParts parts =
+            find_cell_parts(surface_, inside_, cell.cell, cell.own(std::as_const(cuts_)), cell.own(cut_copies_));
+        cell.corner_parts = parts.corners;
+        cell.copies = parts.count;
+        fills.insert(fills.end(), parts.fills.begin(), parts.fills.end());
       }
     });
     Index first = 0;
     for (CoverCell& cell : cells_) {
       cell.first_copy = first;
-      first += cell.parts.count;
-      for (std::size_t i = cell.cuts; i < cell.cuts + cell.count; ++i) cut_copies_[i] += cell.first_copy;
+      first += cell.copies;
+      for (Index& copy : cell.own(cut_copies_)) copy += cell.first_copy;
     }
+    fills_.reserve(at(first));
+    for (const std::vector<double>& fills : chunks) fills_.insert(fills_.end(), fills.begin(), fills.end());
+    CHECK(fills_.size() == at(first));
   }
 
   /// Sets of (copy, corner) that are one node.
@@ -106,7 +141,7 @@ class Cover {
     for (std::size_t c = 0; c < cells_.size(); ++c)
       for (std::size_t face = 0; face < 4; ++face) {
         const CellNeighbor neighbor = cell_neighbor(cells_[c].cell, face);
-        const Index other = numbers_.find(cell_key(neighbor.cell));
+        const Index other = find_cell(neighbor.cell);
         if (other > static_cast<Index>(c)) join_across(cells_[c], cells_[at(other)], face, neighbor, nodes);
       }
     return nodes;
@@ -122,7 +157,7 @@ class Cover {
       if (k != face && a.corner_copy(k) >= 0 && b.corner_copy(neighbor.corner[k]) >= 0)
         join(a.corner_copy(k), b.corner_copy(neighbor.corner[k]));
     // Triangles that pass through the face, as either of the two sees it; both lists ascend.
-    for (std::size_t i = a.cuts, j = b.cuts; i < a.cuts + a.count && j < b.cuts + b.count;) {
+    for (std::size_t i = at(a.cuts), j = at(b.cuts); i < at(a.cuts + a.count) && j < at(b.cuts + b.count);) {
       const Index t = cuts_[i].triangle, u = cuts_[j].triangle;
       if (t == u && (((cuts_[i].faces >> face) & 1) != 0 || ((cuts_[j].faces >> neighbor.face) & 1) != 0))
         join(cut_copies_[i], cut_copies_[j]);
@@ -140,8 +175,8 @@ class Cover {
   std::vector<FacePair> copies_with_a_common_face(DisjointSets& nodes) const {
     std::vector<FacePair> pairs;
     for (const CoverCell& cell : cells_)
-      for (Index a = cell.first_copy; a < cell.first_copy + cell.parts.count; ++a)
-        for (Index b = a + 1; b < cell.first_copy + cell.parts.count; ++b) {
+      for (Index a = cell.first_copy; a < cell.first_copy + cell.copies; ++a)
+        for (Index b = a + 1; b < cell.first_copy + cell.copies; ++b) {
           std::size_t apart = 0, count = 0;
           for (std::size_t k = 0; k < 4; ++k)
             if (nodes.root(4 * a + static_cast<Index>(k)) != nodes.root(4 * b + static_cast<Index>(k))) {
@@ -162,8 +197,9 @@ class Cover {
   /// that dips through a cell, they become one element there. Where that would run on along them, as with fingers,
   /// they are left as they are.
   void merge_short_branches(DisjointSets& nodes) const {
+    std::vector<FacePair> pairs = copies_with_a_common_face(nodes), all;
+    if (pairs.empty()) return;
     DisjointSets merged = nodes;
-    std::vector<FacePair> pairs = copies_with_a_common_face(merged), all;
     for (int round = 0; round < kMergeRounds && !pairs.empty(); ++round) {
       for (const FacePair& pair : pairs) merge(pair, merged);
       all.insert(all.end(), pairs.begin(), pairs.end());
@@ -201,9 +237,11 @@ class Cover {
   std::vector<Index> make_elements(DisjointSets& nodes, TetMesh& mesh) const {
     const std::vector<Index> number = number_nodes(nodes, mesh);
     std::vector<Index> elements(at(copies()));
+    mesh.tets.reserve(elements.size());
+    mesh.fill.reserve(elements.size());
     for (const CoverCell& cell : cells_) {
       const auto first = static_cast<Index>(mesh.tets.size());
-      for (Index part = 0; part < cell.parts.count; ++part) {
+      for (Index part = 0; part < cell.copies; ++part) {
         Tet tet;
         for (std::size_t k = 0; k < 4; ++k)
           tet[k] = number[at(nodes.root(4 * (cell.first_copy + part) + static_cast<Index>(k)))];
@@ -213,7 +251,7 @@ class Cover {
           mesh.tets.push_back(tet);
           mesh.fill.push_back(0);
         }
-        mesh.fill[at(elements[at(cell.first_copy + part)])] += cell.parts.fills[at(part)];
+        mesh.fill[at(elements[at(cell.first_copy + part)])] += fills_[at(cell.first_copy + part)];
       }
     }
     for (double& fill : mesh.fill) fill = std::clamp(fill, kLeastFill, 1.0);
@@ -225,7 +263,7 @@ class Cover {
     std::vector<std::pair<Index, Index>> roots;  // lattice node, root
     for (const CoverCell& cell : cells_) {
       const std::array<LatticeNode, 4> corners = cell_corners(cell.cell);
-      for (Index part = 0; part < cell.parts.count; ++part)
+      for (Index part = 0; part < cell.copies; ++part)
         for (std::size_t k = 0; k < 4; ++k) {
           const Index item = 4 * (cell.first_copy + part) + static_cast<Index>(k);
           if (nodes.root(item) == item) roots.emplace_back(lattice_nodes_.find(corners[k]), item);
@@ -233,6 +271,7 @@ class Cover {
     }
     std::sort(roots.begin(), roots.end());
     std::vector<Index> number(4 * at(copies()), -1);
+    mesh.nodes.reserve(roots.size());
     for (const auto& [lattice_node, root] : roots) {
       number[at(root)] = static_cast<Index>(mesh.nodes.size());
       mesh.nodes.push_back(lattice_position(surface_.frame, lattice_nodes_.nodes()[at(lattice_node)]));
@@ -256,13 +295,12 @@ class Cover {
   Index find_element(const std::vector<Index>& elements, const CarriedPoint& point) const {
     const Vec3 place = (point.position - surface_.frame.origin) * (2.0 / surface_.frame.spacing);
     if (!place.allFinite() || place.cwiseAbs().maxCoeff() >= kMaxLatticeCoordinate) return -1;
-    const Index number = numbers_.find(cell_key(cell_at(place)));
+    const Index number = find_cell(cell_at(place));
     if (number < 0) return -1;
     const CoverCell& cell = cells_[at(number)];
-    if (cell.parts.count == 1) return elements[at(cell.first_copy)];
-    const std::size_t cut =
-        nearest_cut_in_cell(surface_, inside_, cell.cell, std::span(cuts_).subspan(cell.cuts, cell.count), place);
-    return elements[at(cut_copies_[cell.cuts + cut])];
+    if (cell.copies == 1) return elements[at(cell.first_copy)];
+    const std::size_t cut = nearest_cut_in_cell(surface_, inside_, cell.cell, cell.own(cuts_), place);
+    return elements[at(cut_copies_[at(cell.cuts) + cut])];
   }
 
   const LatticeSurface& surface_;
@@ -270,7 +308,8 @@ class Cover {
   std::vector<CellCut> cuts_;
   std::vector<Index> cut_copies_;  ///< per cut: the copy it is in (first its part within the cell)
   std::vector<CoverCell> cells_;   ///< along the lattice
-  KeyIndex numbers_;               ///< of cells, by cell_key
+  std::vector<double> fills_;      ///< per copy: its share of the cell's volume
+  NumberTable table_;              ///< of cells, by cell_key
   LatticeNodeSet lattice_nodes_;
 };
 

@@ -104,7 +104,7 @@ class Filling {
         sampler_(filled.sampler),
         caps_(filled.caps),
         visible_(find_visible(filled.surface, sampler_, error_, threads)),
-        samples_(sample_surface(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_)) {
+        samples_(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_) {
     for (const Triangle& triangle : filled.surface.triangles)
       octree_.refine(corners(filled.surface.positions, triangle), params.finer);
   }
@@ -113,6 +113,7 @@ class Filling {
     GradedFilling filling;
     const int rounds = params_.error > 0 ? kErrorRounds : 1;
     for (int round = 0; round < rounds; ++round) {
+      filling = {};  // before there is the next
       filling = fill();
       std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
       add_loose_pieces(filling.stuffed, gaps);
@@ -190,12 +191,17 @@ class Filling {
     return width;
   }
 
+  SurfaceDistance sample_nodes() const {
+    LatticeNodeSet nodes = octree_.nodes();
+    const std::vector<double> widths = octree_.widths(nodes);
+    return sampler_.sample(frame_, std::move(nodes), widths, known_, threads_);
+  }
+
   GradedFilling fill() {
     GradedFilling filling;
-    const LatticeNodeSet nodes = octree_.nodes();
-    filling.distance = sampler_.sample(frame_, nodes, octree_.widths(nodes), known_, threads_);
-    known_ = filling.distance;
-    filling.stuffed = stuff_octree(octree_, nodes, filling.distance.lattice.values);
+    known_ = sample_nodes();
+    filling.nearest_triangles = known_.nearest_triangles;
+    filling.stuffed = stuff_octree(octree_, known_.lattice.nodes, known_.lattice.values);
     mend_boundary(filling.stuffed);
     filling.stuffed.mesh.lattice = {frame_.origin, base_edge_};
     filling.finest_edge = frame_.spacing;
@@ -217,7 +223,7 @@ class Filling {
   /// The whole surface, for a lattice that has no node inside.
   std::vector<BoundaryGap> everywhere() const {
     std::vector<BoundaryGap> gaps;
-    for (const Vec3& p : samples_) gaps.push_back({p, p, {-1, -1, -1}});
+    for (std::size_t s = 0; s < samples_.size(); ++s) gaps.push_back({samples_[s], samples_[s], {-1, -1, -1}});
     return gaps;
   }
 
@@ -288,7 +294,7 @@ class Filling {
   const DistanceSampler& sampler_;
   const HoleCaps& caps_;
   SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap
-  std::vector<Vec3> samples_;
+  SurfaceSamples samples_;
   FitMemory memory_;
   SurfaceDistance known_;  ///< of the filling before
 };

@@ -20,10 +20,10 @@ struct ErrorBudgetParams {
 
 /// A graded mesh and what it was made from.
 struct GradedFilling {
-  StuffedMesh stuffed;       ///< its lattice is that of the base edge
-  SurfaceDistance distance;  ///< stuffed.lattice_nodes are its nodes
-  double finest_edge = 0;    ///< m
-  bool is_kept = false;      ///< the error: measured, not only hoped for
+  StuffedMesh stuffed;                   ///< its lattice is that of the base edge
+  std::vector<Index> nearest_triangles;  ///< per lattice node of `stuffed`: a triangle near it, -1: there is none
+  double finest_edge = 0;                ///< m
+  bool is_kept = false;                  ///< the error: measured, not only hoped for
 };
 
 /// Fills, fits, measures, and refines where the boundary and the surface are further apart than `error`, until they are

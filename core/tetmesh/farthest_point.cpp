@@ -71,7 +71,7 @@ class Search {
   double upper_bound(const Probe& a, const Probe& b, const Probe& c) const {
     double least = 1e300;
     for (const Probe* of : {&a, &b, &c}) {
-      const auto& [x, y, z] = tree_.corners()[static_cast<std::size_t>(of->leaf_place)];
+      const auto& [x, y, z] = tree_.corners(of->leaf_place);
       double most = 0;
       for (const Probe* p : {&a, &b, &c})
         most = std::max(most, (nearest_on_triangle(p->point, x, y, z) - p->point).squaredNorm());
@@ -94,8 +94,11 @@ double mean_edge(const std::vector<Vec3>& points, const std::vector<Triangle>& t
   for (const auto& [a, b, c] : triangles)
     own += edge_sum(points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)],
                     points[static_cast<std::size_t>(c)]);
-  for (const auto& [a, b, c] : tree.corners()) other += edge_sum(a, b, c);
-  return std::min(own / static_cast<double>(triangles.size()), other / static_cast<double>(tree.corners().size())) / 3;
+  for (std::size_t place = 0; place < tree.order().size(); ++place) {
+    const auto& [a, b, c] = tree.corners(static_cast<Index>(place));
+    other += edge_sum(a, b, c);
+  }
+  return std::min(own / static_cast<double>(triangles.size()), other / static_cast<double>(tree.order().size())) / 3;
 }
 
 /// Nearest places of all points that a triangle uses.

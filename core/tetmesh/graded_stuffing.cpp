@@ -7,7 +7,6 @@
 
 #include "core/base/check.h"
 #include "core/tetmesh/cut_stencils.h"
-#include "core/tetmesh/key_index.h"
 
 namespace softreel {
 namespace {
@@ -53,15 +52,43 @@ constexpr double kWarpGraded = 0.3;
 /// Corners of a tetrahedron, by number.
 using Corners = std::array<Index, 4>;
 
+/// The tetrahedra between the leaves, in blocks: growing moves none of them, and each block goes when it is done with.
+class CornerBlocks {
+ public:
+  void push_back(const Corners& corners) {
+    if (blocks_.empty() || blocks_.back().size() == kBlockSize) blocks_.emplace_back().reserve(kBlockSize);
+    blocks_.back().push_back(corners);
+  }
+
+  template <typename Visit>
+  void visit(const Visit& visit) const {
+    for (const std::vector<Corners>& block : blocks_)
+      for (const Corners& corners : block) visit(corners);
+  }
+
+  /// Visits all and frees them on the way.
+  template <typename Visit>
+  void take(const Visit& visit) {
+    for (std::vector<Corners>& block : blocks_) {
+      for (const Corners& corners : block) visit(corners);
+      std::vector<Corners>().swap(block);
+    }
+    blocks_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kBlockSize = 1 << 14;
+  std::vector<std::vector<Corners>> blocks_;
+};
+
 class Stuffing {
  public:
   Stuffing(const GradedOctree& octree, const LatticeNodeSet& nodes, const std::vector<double>& values)
       : frame_(octree.frame()), nodes_(nodes.nodes()), values_(values) {
     CHECK(values.size() == nodes_.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      signs_.push_back(values[i] < 0 ? NodeSign::Inside : values[i] > 0 ? NodeSign::Outside : NodeSign::Surface);
-      positions_.push_back(lattice_position(frame_, nodes_[i]));
-    }
+    signs_.reserve(nodes_.size());
+    for (const double value : values)
+      signs_.push_back(value < 0 ? NodeSign::Inside : value > 0 ? NodeSign::Outside : NodeSign::Surface);
     octree.visit_tets(nodes, [&](const std::array<LatticeNode, 4>& tet) {
       Corners corners;
       bool inside = false;
@@ -74,44 +101,67 @@ class Stuffing {
   }
 
   StuffedMesh run() {
-    find_shortest_edges();
     find_cut_edges();
-    for (std::size_t i = 0; i < nodes_.size(); ++i) warp(static_cast<Index>(i));
+    warp_nodes();
     StuffedMesh stuffed;
     stuffed.mesh.lattice = frame_;
+    reserve(stuffed);
     node_numbers_.assign(nodes_.size(), -1);
-    for (const Corners& corners : tets_) emit(corners, stuffed);
+    cut_numbers_.assign(ends_.size(), -1);
+    tets_.take([&](const Corners& corners) { emit(corners, stuffed); });
     return stuffed;
   }
 
  private:
-  void find_shortest_edges() {
-    shortest_.assign(nodes_.size(), 1e300);
-    for (const Corners& tet : tets_)
-      for (const auto& [a, b] : kStencilEdges) {
-        const double length = std::sqrt(static_cast<double>(squared_length(nodes_[at(tet[a])], nodes_[at(tet[b])])));
-        for (const Index end : {tet[a], tet[b]}) shortest_[at(end)] = std::min(shortest_[at(end)], length);
-      }
+  NodeSign sign(Index i) const { return signs_[at(i)]; }
+  bool are_opposite(Index i, Index j) const { return static_cast<int>(sign(i)) * static_cast<int>(sign(j)) < 0; }
+
+  template <typename Visit>
+  void visit_cut_edges(const Visit& visit) const {
+    tets_.visit([&](const Corners& tet) {
+      for (const auto& [a, b] : kStencilEdges)
+        if (are_opposite(tet[a], tet[b])) visit(tet[a], tet[b]);
+    });
   }
 
-  /// Ends of the edges that the surface cuts, listed at both ends.
+  /// Ends of the edges that the surface cuts, listed at both ends, ascending.
   void find_cut_edges() {
-    std::vector<std::array<Index, 2>> edges;
-    for (const Corners& tet : tets_)
-      for (const auto& [a, b] : kStencilEdges) {
-        const Index i = tet[a], j = tet[b];
-        if (static_cast<int>(signs_[at(i)]) * static_cast<int>(signs_[at(j)]) >= 0) continue;
-        edges.push_back({i, j});
-        edges.push_back({j, i});
-      }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     offsets_.assign(nodes_.size() + 1, 0);
-    for (const auto& [i, j] : edges) {
-      ++offsets_[at(i) + 1];
-      ends_.push_back(j);
-    }
+    visit_cut_edges([&](Index i, Index j) {
+      ++offsets_[at(i)];
+      ++offsets_[at(j)];
+    });
     std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+    ends_.resize(at(offsets_.back()));
+    visit_cut_edges([&](Index i, Index j) {  // from the ends of the lists to their beginnings
+      ends_[at(--offsets_[at(i)])] = j;
+      ends_[at(--offsets_[at(j)])] = i;
+    });
+    Index kept = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const auto begin = ends_.begin() + offsets_[i];
+      const auto end = ends_.begin() + offsets_[i + 1];
+      std::sort(begin, end);
+      offsets_[i] = kept;
+      // An edge was met once for each of its tetrahedra.
+      for (auto e = begin; e != end; ++e)
+        if (kept == offsets_[i] || ends_[at(kept) - 1] != *e) ends_[at(kept++)] = *e;
+    }
+    offsets_.back() = kept;
+    ends_.resize(at(kept));
+    ends_.shrink_to_fit();
+  }
+
+  /// Per node: the shortest edge, units.
+  std::vector<double> find_shortest_edges() const {
+    std::vector<double> shortest(nodes_.size(), 1e300);
+    tets_.visit([&](const Corners& tet) {
+      for (const auto& [a, b] : kStencilEdges) {
+        const double length = std::sqrt(static_cast<double>(squared_length(nodes_[at(tet[a])], nodes_[at(tet[b])])));
+        for (const Index end : {tet[a], tet[b]}) shortest[at(end)] = std::min(shortest[at(end)], length);
+      }
+    });
+    return shortest;
   }
 
   double cut_fraction(Index i, Index j) const {
@@ -119,28 +169,62 @@ class Stuffing {
     return a / (a + b);
   }
 
+  void warp_nodes() {
+    const std::vector<double> shortest = find_shortest_edges();
+    warp_targets_.assign(nodes_.size(), -1);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) warp(static_cast<Index>(i), shortest[i]);
+  }
+
   /// Moves a node to its nearest violating cut, as in the uniform lattice; nodes later in the order see its new sign.
-  void warp(Index i) {
-    double nearest = 1e300, nearest_fraction = 0;
+  void warp(Index i, double shortest) {
+    double nearest = 1e300;
     Index target = -1;
     for (Index e = offsets_[at(i)]; e < offsets_[at(i) + 1]; ++e) {
       const Index j = ends_[at(e)];
-      if (signs_[at(j)] == NodeSign::Surface) continue;
+      if (sign(j) == NodeSign::Surface) continue;
       const double fraction = cut_fraction(i, j);
       const double length = fraction * std::sqrt(static_cast<double>(squared_length(nodes_[at(i)], nodes_[at(j)])));
-      if (fraction >= kWarpGraded || length >= kWarpGraded * shortest_[at(i)] || length >= nearest) continue;
+      if (fraction >= kWarpGraded || length >= kWarpGraded * shortest || length >= nearest) continue;
       nearest = length;
-      nearest_fraction = fraction;
       target = j;
     }
     if (target < 0) return;
-    positions_[at(i)] += nearest_fraction * (positions_[at(target)] - positions_[at(i)]);
+    warp_targets_[at(i)] = target;
     signs_[at(i)] = NodeSign::Surface;
   }
 
+  /// Where the surface cuts an edge between two nodes that were not warped before.
+  Vec3 cut_position(Index i, Index j) const {
+    const Vec3 from = lattice_position(frame_, nodes_[at(i)]), to = lattice_position(frame_, nodes_[at(j)]);
+    return from + cut_fraction(i, j) * (to - from);
+  }
+
+  Vec3 position(Index i) const {
+    const Index target = warp_targets_[at(i)];
+    return target < 0 ? lattice_position(frame_, nodes_[at(i)]) : cut_position(i, target);
+  }
+
+  /// Room for all elements, and for the nodes that they can have at most.
+  void reserve(StuffedMesh& stuffed) const {
+    std::size_t tets = 0, nodes = 0;
+    tets_.visit([&](const Corners& corners) { tets += cut_stencil(signs_of(corners)).count; });
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (signs_[i] != NodeSign::Outside) ++nodes;
+      for (Index e = offsets_[i]; e < offsets_[i + 1] && signs_[i] == NodeSign::Inside; ++e)
+        nodes += sign(ends_[at(e)]) == NodeSign::Outside ? 1 : 0;
+    }
+    stuffed.mesh.tets.reserve(tets);
+    stuffed.mesh.nodes.reserve(nodes);
+    stuffed.lattice_nodes.reserve(nodes);
+    stuffed.on_surface.reserve(nodes);
+  }
+
+  std::array<NodeSign, 4> signs_of(const Corners& corners) const {
+    return {sign(corners[0]), sign(corners[1]), sign(corners[2]), sign(corners[3])};
+  }
+
   void emit(const Corners& corners, StuffedMesh& stuffed) {
-    std::array<NodeSign, 4> signs;
-    for (std::size_t k = 0; k < 4; ++k) signs[k] = signs_[at(corners[k])];
+    const std::array<NodeSign, 4> signs = signs_of(corners);
     if (std::find(signs.begin(), signs.end(), NodeSign::Inside) == signs.end()) return;
     DiagonalRule rule;
     if (std::find(signs.begin(), signs.end(), NodeSign::Outside) != signs.end()) rule = rule_of(corners);
@@ -168,19 +252,21 @@ class Stuffing {
     if (vertex < 4) {
       const Index i = corners[vertex];
       Index& number = node_numbers_[at(i)];
-      if (number < 0) number = add_node(stuffed, positions_[at(i)], i, signs_[at(i)] == NodeSign::Surface);
+      if (number < 0) number = add_node(stuffed, position(i), i, sign(i) == NodeSign::Surface);
       return number;
     }
     const auto [a, b] = kStencilEdges[vertex - 4U];
     Index i = corners[a], j = corners[b];
-    if (signs_[at(i)] != NodeSign::Inside) std::swap(i, j);
-    const auto key = static_cast<std::uint64_t>(i) << 32 | static_cast<std::uint64_t>(j);
-    const auto [cut, is_new] = cuts_.insert(key);
-    if (is_new) {
-      const Vec3 &from = positions_[at(i)], &to = positions_[at(j)];
-      cut_numbers_.push_back(add_node(stuffed, from + cut_fraction(i, j) * (to - from), i, true));
-    }
-    return cut_numbers_[at(cut)];
+    if (sign(i) != NodeSign::Inside) std::swap(i, j);
+    Index& number = cut_numbers_[edge_number(i, j)];
+    if (number < 0) number = add_node(stuffed, cut_position(i, j), i, true);
+    return number;
+  }
+
+  /// Place of a cut edge in the list of its end i.
+  std::size_t edge_number(Index i, Index j) const {
+    const auto begin = ends_.begin() + offsets_[at(i)], end = ends_.begin() + offsets_[at(i) + 1];
+    return static_cast<std::size_t>(std::lower_bound(begin, end, j) - ends_.begin());
   }
 
   static Index add_node(StuffedMesh& stuffed, const Vec3& position, Index lattice_node, bool on_surface) {
@@ -194,12 +280,11 @@ class Stuffing {
   const std::vector<LatticeNode>& nodes_;
   const std::vector<double>& values_;
   std::vector<NodeSign> signs_;
-  std::vector<Vec3> positions_;
-  std::vector<Corners> tets_;          ///< with a node inside
+  CornerBlocks tets_;                  ///< with a node inside
   std::vector<Index> offsets_, ends_;  ///< per node: other ends of the edges that are cut
-  std::vector<double> shortest_;       ///< per node: the shortest edge, units
-  std::vector<Index> node_numbers_, cut_numbers_;
-  KeyIndex cuts_;
+  std::vector<Index> warp_targets_;    ///< per node: the end of the edge to whose cut it was moved, -1: it was not
+  std::vector<Index> node_numbers_;    ///< per node: in the mesh, -1: not yet
+  std::vector<Index> cut_numbers_;     ///< per end of a cut edge that lies inside, likewise
 };
 
 }  // namespace

@@ -69,10 +69,18 @@ const std::array<LatticeNode, kNeighbors> kNeighborOffsets{{{-2, 0, 0},
                                                             {-1, 1, 1},
                                                             {1, 1, 1}}};
 
+void LatticeNodeSet::list_block(std::size_t number) {
+  table_.insert(static_cast<Index>(number), [&](Index n) { return blocks_[static_cast<std::size_t>(n)].key; });
+}
+
 bool LatticeNodeSet::insert(const LatticeNode& node) {
   const std::uint64_t key = morton_key(node);
-  const auto [number, is_new] = index_.insert(key >> kBlockBits);
-  if (is_new) blocks_.push_back({key >> kBlockBits, {}, 0});
+  Index number = find_block(key >> kBlockBits);
+  if (number < 0) {
+    number = static_cast<Index>(blocks_.size());
+    blocks_.push_back({key >> kBlockBits, {}, 0});
+    list_block(blocks_.size() - 1);
+  }
   std::uint64_t& bits = blocks_[static_cast<std::size_t>(number)].bits[word_of(key)];
   const bool added = (bits & bit_of(key)) == 0;
   bits |= bit_of(key);
@@ -81,27 +89,32 @@ bool LatticeNodeSet::insert(const LatticeNode& node) {
 
 bool LatticeNodeSet::contains(const LatticeNode& node) const {
   const std::uint64_t key = morton_key(node);
-  const Index number = index_.find(key >> kBlockBits);
+  const Index number = find_block(key >> kBlockBits);
   return number >= 0 && (blocks_[static_cast<std::size_t>(number)].bits[word_of(key)] & bit_of(key)) != 0;
 }
 
 void LatticeNodeSet::number_nodes() {
   std::sort(blocks_.begin(), blocks_.end(), [](const Block& a, const Block& b) { return a.key < b.key; });
-  index_ = KeyIndex();
+  blocks_.shrink_to_fit();
+  table_.clear();
+  Index first = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    list_block(b);
+    blocks_[b].first = first;
+    first += std::popcount(blocks_[b].bits[0]) + std::popcount(blocks_[b].bits[1]);
+  }
   nodes_.clear();
-  for (Block& block : blocks_) {
-    index_.insert(block.key);
-    block.first = static_cast<Index>(nodes_.size());
+  nodes_.reserve(static_cast<std::size_t>(first));
+  for (const Block& block : blocks_)
     for (std::uint64_t word = 0; word < 2; ++word)
       for (std::uint64_t bits = block.bits[word]; bits != 0; bits &= bits - 1)
         nodes_.push_back(
             node_of_key((block.key << kBlockBits) + 64 * word + static_cast<std::uint64_t>(std::countr_zero(bits))));
-  }
 }
 
 Index LatticeNodeSet::find(const LatticeNode& node) const {
   const std::uint64_t key = morton_key(node);
-  const Index number = index_.find(key >> kBlockBits);
+  const Index number = find_block(key >> kBlockBits);
   if (number < 0) return -1;
   const Block& block = blocks_[static_cast<std::size_t>(number)];
   const std::size_t word = word_of(key);

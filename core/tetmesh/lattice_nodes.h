@@ -7,7 +7,7 @@
 
 #include "core/base/types.h"
 #include "core/tetmesh/bcc_lattice.h"
-#include "core/tetmesh/key_index.h"
+#include "core/tetmesh/number_table.h"
 
 namespace softreel {
 
@@ -48,7 +48,7 @@ class LatticeNodeSet {
   bool insert(const LatticeNode& node);
   bool contains(const LatticeNode& node) const;
 
-  /// Numbers all nodes. Cost: a sort of the blocks.
+  /// Numbers all nodes, and gives back room that was kept for more. Cost: a sort of the blocks.
   void number_nodes();
 
   /// Number of a node, -1 if it is not in the set. Only after number_nodes; thread-safe.
@@ -63,7 +63,12 @@ class LatticeNodeSet {
     Index first = 0;  // number of the block's first node
   };
 
-  KeyIndex index_;
+  Index find_block(std::uint64_t key) const {
+    return table_.find(key, [&](Index number) { return blocks_[static_cast<std::size_t>(number)].key == key; });
+  }
+  void list_block(std::size_t number);
+
+  NumberTable table_;  // of blocks
   std::vector<Block> blocks_;
   std::vector<LatticeNode> nodes_;
 };

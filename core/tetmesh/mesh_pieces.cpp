@@ -28,6 +28,7 @@ Pieces find_pieces(const TetMesh& mesh) {
   for (const Tet& tet : mesh.tets)
     for (std::size_t k = 1; k < 4; ++k) sets.join(tet[0], tet[k]);
   Pieces pieces;
+  pieces.tet_pieces.reserve(mesh.tets.size());
   std::vector<Index> number(mesh.nodes.size(), -1);
   for (const auto& [a, b, c, d] : mesh.tets) {
     Index& piece = number[at(sets.root(a))];
@@ -44,19 +45,20 @@ Pieces find_pieces(const TetMesh& mesh) {
 }
 
 /// The part of the surface near a mesh node, -1 deep inside.
-Index part_near(const StuffedMesh& stuffed, const SurfaceDistance& distance, const SurfaceParts& parts, Index node) {
-  const Index triangle = distance.nearest_triangles[at(stuffed.lattice_nodes[at(node)])];
+Index part_near(const StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles, const SurfaceParts& parts,
+                Index node) {
+  const Index triangle = nearest_triangles[at(stuffed.lattice_nodes[at(node)])];
   return triangle < 0 ? -1 : parts.triangle_parts[at(triangle)];
 }
 
 /// The largest piece that each part of the surface bounds, -1 if none.
-std::vector<Index> main_pieces(const StuffedMesh& stuffed, const SurfaceDistance& distance, const SurfaceParts& parts,
-                               const Pieces& pieces) {
+std::vector<Index> main_pieces(const StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles,
+                               const SurfaceParts& parts, const Pieces& pieces) {
   std::vector<Index> main(parts.parts.size(), -1);
   for (std::size_t e = 0; e < stuffed.mesh.tets.size(); ++e) {
     const Index piece = pieces.tet_pieces[e];
     for (const Index node : stuffed.mesh.tets[e]) {
-      const Index part = part_near(stuffed, distance, parts, node);
+      const Index part = part_near(stuffed, nearest_triangles, parts, node);
       if (part < 0 || main[at(part)] == piece) continue;
       Index& best = main[at(part)];
       if (best < 0 || pieces.volumes[at(piece)] > pieces.volumes[at(best)]) best = piece;
@@ -81,12 +83,12 @@ double needed_edge(const SurfacePart& part, double edge) {
 
 }  // namespace
 
-void drop_crumbs(StuffedMesh& stuffed, const SurfaceDistance& distance, const SurfaceParts& parts,
+void drop_crumbs(StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles, const SurfaceParts& parts,
                  const std::string& name, const Log& log) {
   const Pieces pieces = find_pieces(stuffed.mesh);
   if (pieces.volumes.size() <= 1) return;
   std::vector<bool> is_main(pieces.volumes.size(), false), removed(pieces.volumes.size(), false);
-  for (const Index piece : main_pieces(stuffed, distance, parts, pieces))
+  for (const Index piece : main_pieces(stuffed, nearest_triangles, parts, pieces))
     if (piece >= 0) is_main[at(piece)] = true;
   const double cell = std::pow(stuffed.mesh.lattice.spacing, 3);
   Index crumbs = 0, crumb_tets = 0, loose = 0;
@@ -112,12 +114,12 @@ void drop_crumbs(StuffedMesh& stuffed, const SurfaceDistance& distance, const Su
                     name, stuffed.mesh.lattice.spacing, loose, loose == 1 ? "" : "s"));
 }
 
-void require_all_parts(const StuffedMesh& stuffed, const SurfaceDistance& distance, const SurfaceParts& parts,
-                       const std::string& name, const Log& log) {
+void require_all_parts(const StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles,
+                       const SurfaceParts& parts, const std::string& name, const Log& log) {
   std::vector<bool> present(parts.parts.size(), false);
   for (const Tet& tet : stuffed.mesh.tets)
     for (const Index node : tet) {
-      const Index part = part_near(stuffed, distance, parts, node);
+      const Index part = part_near(stuffed, nearest_triangles, parts, node);
       if (part >= 0) present[at(part)] = true;
     }
   for (std::size_t p = 0; p < present.size(); ++p) {
@@ -142,6 +144,7 @@ void require_all_parts(const StuffedMesh& stuffed, const SurfaceDistance& distan
 
 void order_nodes(StuffedMesh& stuffed) {
   std::vector<Index> number(stuffed.mesh.nodes.size(), -1), order;
+  order.reserve(stuffed.mesh.nodes.size());
   for (const Tet& tet : stuffed.mesh.tets)
     for (const Index node : tet) number[at(node)] = 0;
   for (std::size_t i = 0; i < number.size(); ++i)
@@ -151,6 +154,9 @@ void order_nodes(StuffedMesh& stuffed) {
   StuffedMesh ordered;
   ordered.mesh.lattice = stuffed.mesh.lattice;
   ordered.mesh.tets.swap(stuffed.mesh.tets);
+  ordered.mesh.nodes.reserve(order.size());
+  ordered.lattice_nodes.reserve(order.size());
+  ordered.on_surface.reserve(order.size());
   for (const Index node : order) {
     number[at(node)] = static_cast<Index>(ordered.mesh.nodes.size());
     ordered.mesh.nodes.push_back(stuffed.mesh.nodes[at(node)]);

@@ -15,6 +15,9 @@ constexpr double kCell = 8;
 /// A triangle whose box covers more cells is near everything.
 constexpr std::int64_t kManyCells = 512;
 
+/// Rows are crossed in so many slabs, one after the other.
+constexpr std::int32_t kSlabs = 8;
+
 using Cell = std::array<std::int64_t, 3>;
 
 std::int64_t cell_of(double unit) {
@@ -29,12 +32,31 @@ std::uint64_t key_of(const Cell& cell) {
   return key;
 }
 
-/// Cells that rows pass through where the surface goes round them more than once.
-KeyIndex overlapped_cells(const RowCrossings& rows) {
+/// The box of the surface, lattice units.
+Bounds lattice_box(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                   const LatticeFrame& frame) {
+  Bounds box;
+  for (const Triangle& triangle : triangles)
+    for (const Index v : triangle)
+      box.add((positions[static_cast<std::size_t>(v)] - frame.origin) * (2.0 / frame.spacing));
+  return box;
+}
+
+/// Cells that rows pass through where the surface goes round them more than once. The rows are taken in slabs, as those
+/// of a whole surface may take more memory than all that is filled into it.
+KeyIndex overlapped_cells(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                          const LatticeFrame& frame) {
+  const Bounds box = lattice_box(positions, triangles, frame);
+  const auto low = static_cast<std::int32_t>(std::floor(box.min[2])) - 1,
+             high = static_cast<std::int32_t>(std::ceil(box.max[2])) + 2;
   KeyIndex cells;
-  rows.visit_overlaps([&](std::int32_t y, std::int32_t z, double begin, double end) {
-    for (std::int64_t x = cell_of(begin); x <= cell_of(end); ++x) cells.insert(key_of({x, cell_of(y), cell_of(z)}));
-  });
+  for (std::int32_t slab = 0; slab < kSlabs; ++slab) {
+    const auto begin_of = [&](std::int32_t s) { return low + (high - low) * s / kSlabs; };
+    const RowCrossings rows(positions, triangles, frame, {begin_of(slab), begin_of(slab + 1)});
+    rows.visit_overlaps([&](std::int32_t y, std::int32_t z, double begin, double end) {
+      for (std::int64_t x = cell_of(begin); x <= cell_of(end); ++x) cells.insert(key_of({x, cell_of(y), cell_of(z)}));
+    });
+  }
   return cells;
 }
 
@@ -59,7 +81,7 @@ bool has_cell(const KeyIndex& cells, const Vec3& min, const Vec3& max) {
 
 std::vector<std::uint8_t> find_near_overlaps(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                                              const LatticeFrame& frame) {
-  const KeyIndex cells = overlapped_cells(RowCrossings(positions, triangles, frame));
+  const KeyIndex cells = overlapped_cells(positions, triangles, frame);
   if (cells.size() == 0) return {};
   std::vector<std::uint8_t> near(triangles.size(), 0);
   for (std::size_t t = 0; t < triangles.size(); ++t) {

@@ -62,33 +62,45 @@ struct PlaneCut {
 }  // namespace
 
 RowCrossings::RowCrossings(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
-                           const LatticeFrame& frame) {
+                           const LatticeFrame& frame, const RowRange& rows) {
   for (const Triangle& triangle : triangles) {
     std::array<Vec3, 3> x;
     for (std::size_t k = 0; k < 3; ++k) x[k] = positions[static_cast<std::size_t>(triangle[k])];
-    cross_triangle(in_lattice_units(x, frame));
+    cross_triangle(in_lattice_units(x, frame), rows);
   }
   std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
     if (a.z != b.z) return a.z < b.z;
     if (a.y != b.y) return a.y < b.y;
     return a.x != b.x ? a.x < b.x : a.sign < b.sign;
   });
-  for (std::size_t c = 0; c < crossings_.size(); ++c)
-    if (rows_.insert(row_key(crossings_[c].y, crossings_[c].z)).second) row_begins_.push_back(static_cast<Index>(c));
+  for (std::size_t c = 0; c < crossings_.size(); ++c) {
+    if (c > 0 && crossings_[c].y == crossings_[c - 1].y && crossings_[c].z == crossings_[c - 1].z) continue;
+    row_begins_.push_back(static_cast<Index>(c));
+    table_.insert(static_cast<Index>(row_begins_.size() - 1), [&](Index row) {
+      const Crossing& first = first_of_row(row);
+      return row_key(first.y, first.z);
+    });
+  }
   row_begins_.push_back(static_cast<Index>(crossings_.size()));
 }
 
-void RowCrossings::cross_triangle(const std::array<Corner, 3>& corners) {
+void RowCrossings::cross_triangle(const std::array<Corner, 3>& corners, const RowRange& rows) {
+  const auto [first, last] = std::minmax({corners[0][2], corners[1][2], corners[2][2]});
+  if (last + 1 < rows.begin || first - 1 >= rows.end) return;  // 1: more than round-off
   const auto [low, high] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
   for (auto y = static_cast<std::int32_t>(std::ceil(low)); y < high; ++y) {
     const PlaneCut cut(corners, y);
-    for (std::int32_t z = first_of_parity(cut.z_begin(), y); z < cut.z_end(); z += 2)
+    const double end = std::min<double>(cut.z_end(), rows.end);
+    for (std::int32_t z = first_of_parity(std::max<double>(cut.z_begin(), rows.begin), y); z < end; z += 2)
       crossings_.push_back({z, y, cut.x_at(z), cut.sign()});
   }
 }
 
 int RowCrossings::winding(const LatticeNode& node) const {
-  const Index row = rows_.find(row_key(node[1], node[2]));
+  const Index row = table_.find(row_key(node[1], node[2]), [&](Index number) {
+    const Crossing& first = first_of_row(number);
+    return first.y == node[1] && first.z == node[2];
+  });
   if (row < 0) return 0;
   int winding = 0;
   for (Index c = row_begins_[static_cast<std::size_t>(row)]; c < row_begins_[static_cast<std::size_t>(row) + 1]; ++c)
@@ -115,7 +127,7 @@ int winding_of_node(const TriangleTree& tree, const LatticeFrame& frame, const L
       continue;
     }
     for (Index i = box.begin; i < box.end; ++i) {
-      const Corners corners = in_lattice_units(tree.corners()[static_cast<std::size_t>(i)], frame);
+      const Corners corners = in_lattice_units(tree.corners(i), frame);
       const auto [from, to] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
       if (!(from <= node[1] && node[1] < to)) continue;
       const PlaneCut cut(corners, node[1]);

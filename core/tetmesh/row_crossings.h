@@ -2,20 +2,30 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include "core/tetmesh/lattice_nodes.h"
+#include "core/tetmesh/number_table.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
+
+/// The rows with z in [begin, end), lattice units.
+struct RowRange {
+  std::int32_t begin = std::numeric_limits<std::int32_t>::min(), end = std::numeric_limits<std::int32_t>::max();
+};
 
 /// All crossings of the rows of a lattice with a surface. Every edge is decided from its own two ends alone, the same
 /// for all its triangles, so that a closed surface gives integers that change nowhere but at the surface, whatever the
 /// round-off. Linear in triangles and crossings; reading is thread-safe.
 class RowCrossings {
  public:
-  RowCrossings(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, const LatticeFrame& frame);
+  /// Of all rows, or of those in a range.
+  RowCrossings(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, const LatticeFrame& frame,
+               const RowRange& rows = {});
 
   /// How often the surface goes round a node; meaningful if every edge is used as often in one direction as in the
   /// other.
@@ -39,11 +49,14 @@ class RowCrossings {
   };
   using Corner = std::array<double, 3>;
 
-  void cross_triangle(const std::array<Corner, 3>& corners);
+  void cross_triangle(const std::array<Corner, 3>& corners, const RowRange& rows);
+  const Crossing& first_of_row(Index row) const {
+    return crossings_[static_cast<std::size_t>(row_begins_[static_cast<std::size_t>(row)])];
+  }
 
   std::vector<Crossing> crossings_;  // by row, then x
-  KeyIndex rows_;
-  std::vector<Index> row_begins_;  // rows + 1
+  NumberTable table_;                // of rows
+  std::vector<Index> row_begins_;    // rows + 1
 };
 
 template <typename Visit>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/narrow_band.h"
@@ -106,13 +107,13 @@ DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::
   near_overlaps_ = find_near_overlaps(positions, triangles, {box.center(), box.diagonal() / kRows});
 }
 
-SurfaceDistance DistanceSampler::sample(const LatticeFrame& frame, const LatticeNodeSet& nodes,
+SurfaceDistance DistanceSampler::sample(const LatticeFrame& frame, LatticeNodeSet nodes,
                                         const std::vector<double>& reaches, const SurfaceDistance& known,
                                         const Threads& threads) const {
-  const std::vector<LatticeNode>& list = nodes.nodes();
   SurfaceDistance result;
   result.lattice.frame = frame;
-  result.lattice.nodes = nodes;
+  result.lattice.nodes = std::move(nodes);
+  const std::vector<LatticeNode>& list = result.lattice.nodes.nodes();
   result.lattice.values.resize(list.size());
   result.nearest_triangles.resize(list.size());
   threads.for_chunks(static_cast<std::int64_t>(list.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {

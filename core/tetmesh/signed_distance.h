@@ -36,7 +36,7 @@ class DistanceSampler {
 
   /// Distances of all `nodes` (numbered, of the lattice at `frame`), m; at most `reaches`, one a node. What `known`, an
   /// earlier result, has is taken from there.
-  SurfaceDistance sample(const LatticeFrame& frame, const LatticeNodeSet& nodes, const std::vector<double>& reaches,
+  SurfaceDistance sample(const LatticeFrame& frame, LatticeNodeSet nodes, const std::vector<double>& reaches,
                          const SurfaceDistance& known, const Threads& threads) const;
 
   const TriangleTree& tree() const { return tree_; }

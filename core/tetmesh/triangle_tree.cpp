@@ -8,6 +8,11 @@ namespace {
 
 constexpr Index kLeafSize = 4;
 
+/// Of a tree over so many triangles.
+std::size_t count_nodes(Index triangles) {
+  return triangles <= kLeafSize ? 1 : 1 + count_nodes(triangles / 2) + count_nodes(triangles - triangles / 2);
+}
+
 }  // namespace
 
 Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -34,28 +39,42 @@ Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
 
 TriangleTree::TriangleTree(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles)
     : order_(triangles.size()) {
-  std::iota(order_.begin(), order_.end(), 0);
-  corners_.reserve(triangles.size());
-  std::vector<Vec3> centroids;
-  centroids.reserve(triangles.size());
-  for (const auto& [a, b, c] : triangles) {
-    corners_.push_back({points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)],
-                        points[static_cast<std::size_t>(c)]});
-    centroids.push_back((corners_.back()[0] + corners_.back()[1] + corners_.back()[2]) / 3.0);
-  }
   if (triangles.empty()) return;
-  nodes_.reserve(triangles.size());
-  build(centroids, 0, static_cast<Index>(triangles.size()));
-  std::vector<std::array<Vec3, 3>> sorted;
-  sorted.reserve(corners_.size());
-  for (const Index t : order_) sorted.push_back(corners_[static_cast<std::size_t>(t)]);
-  corners_.swap(sorted);
+  std::iota(order_.begin(), order_.end(), 0);
+  Given given{points, triangles, {}};
+  given.centroids.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles)
+    given.centroids.push_back((points[static_cast<std::size_t>(a)] + points[static_cast<std::size_t>(b)] +
+                               points[static_cast<std::size_t>(c)]) /
+                              3.0);
+  nodes_.reserve(count_nodes(static_cast<Index>(triangles.size())));
+  build(given, 0, static_cast<Index>(triangles.size()));
+  std::vector<Vec3>().swap(given.centroids);
+  take_corners(given);
+}
+
+void TriangleTree::take_corners(const Given& given) {
+  std::vector<Index> numbers(given.points.size(), -1);
+  triangles_.reserve(order_.size());
+  for (const Index t : order_) {
+    Triangle triangle = given.triangles[static_cast<std::size_t>(t)];
+    for (Index& v : triangle) {
+      Index& number = numbers[static_cast<std::size_t>(v)];
+      if (number < 0) {
+        number = static_cast<Index>(points_.size());
+        points_.push_back(given.points[static_cast<std::size_t>(v)]);
+      }
+      v = number;
+    }
+    triangles_.push_back(triangle);
+  }
+  points_.shrink_to_fit();
 }
 
 TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, double squared_enough) const {
   Nearest guess;
   if (place >= 0) {
-    const auto& [a, b, c] = corners_[static_cast<std::size_t>(place)];
+    const auto& [a, b, c] = corners(place);
     guess.point = nearest_on_triangle(p, a, b, c);
     guess.triangle = order_[static_cast<std::size_t>(place)];
     guess.squared_distance = (guess.point - p).squaredNorm();
@@ -64,18 +83,19 @@ TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, dou
   return search(p, guess, squared_enough, [](Index, const Vec3&) { return true; });
 }
 
-void TriangleTree::build(std::vector<Vec3>& centroids, Index begin, Index end) {
+void TriangleTree::build(const Given& given, Index begin, Index end) {
   const auto number = static_cast<Index>(nodes_.size());
   Node node{Vec3::Constant(1e300), Vec3::Constant(-1e300), begin, end, 0};
   Vec3 low = node.min, high = node.max;
   for (Index i = begin; i < end; ++i) {
     const auto t = static_cast<std::size_t>(order_[static_cast<std::size_t>(i)]);
-    for (const Vec3& corner : corners_[t]) {
+    for (const Index v : given.triangles[t]) {
+      const Vec3& corner = given.points[static_cast<std::size_t>(v)];
       node.min = node.min.cwiseMin(corner);
       node.max = node.max.cwiseMax(corner);
     }
-    low = low.cwiseMin(centroids[t]);
-    high = high.cwiseMax(centroids[t]);
+    low = low.cwiseMin(given.centroids[t]);
+    high = high.cwiseMax(given.centroids[t]);
   }
   nodes_.push_back(node);
   if (end - begin <= kLeafSize) return;
@@ -83,12 +103,13 @@ void TriangleTree::build(std::vector<Vec3>& centroids, Index begin, Index end) {
   (high - low).maxCoeff(&axis);
   const Index middle = begin + (end - begin) / 2;
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](Index a, Index b) {
-    const double x = centroids[static_cast<std::size_t>(a)][axis], y = centroids[static_cast<std::size_t>(b)][axis];
+    const double x = given.centroids[static_cast<std::size_t>(a)][axis],
+                 y = given.centroids[static_cast<std::size_t>(b)][axis];
     return x != y ? x < y : a < b;
   });
-  build(centroids, begin, middle);
+  build(given, begin, middle);
   nodes_[static_cast<std::size_t>(number)].right = static_cast<Index>(nodes_.size());
-  build(centroids, middle, end);
+  build(given, middle, end);
 }
 
 }  // namespace softreel

@@ -24,7 +24,7 @@ class TriangleTree {
     Index triangle = -1;  ///< -1: none accepted
     double squared_distance = 1e300;
     Vec3 point = Vec3::Zero();
-    Index place = -1;  ///< of the triangle in order() and corners()
+    Index place = -1;  ///< of the triangle in order()
   };
 
   /// Copies what it needs. An empty list is allowed.
@@ -45,17 +45,29 @@ class TriangleTree {
   const std::vector<Node>& nodes() const { return nodes_; }
   /// Numbers of the triangles in the order of the leaves.
   const std::vector<Index>& order() const { return order_; }
-  /// Corners of the triangles in the order of the leaves.
-  const std::vector<std::array<Vec3, 3>>& corners() const { return corners_; }
+  /// Corners of the triangle at a place in order().
+  std::array<Vec3, 3> corners(Index place) const {
+    const auto& [a, b, c] = triangles_[static_cast<std::size_t>(place)];
+    return {points_[static_cast<std::size_t>(a)], points_[static_cast<std::size_t>(b)],
+            points_[static_cast<std::size_t>(c)]};
+  }
 
  private:
-  void build(std::vector<Vec3>& centroids, Index begin, Index end);
+  /// What a tree is built from.
+  struct Given {
+    const std::vector<Vec3>& points;
+    const std::vector<Triangle>& triangles;
+    std::vector<Vec3> centroids;  ///< per triangle
+  };
+  void build(const Given& given, Index begin, Index end);
+  void take_corners(const Given& given);
   template <typename Accept>
   Nearest search(const Vec3& p, Nearest best, double squared_enough, const Accept& accept) const;
 
   std::vector<Node> nodes_;
   std::vector<Index> order_;
-  std::vector<std::array<Vec3, 3>> corners_;
+  std::vector<Triangle> triangles_;  ///< in the order of the leaves, of points_
+  std::vector<Vec3> points_;         ///< as the leaves first use them: neighbours are near in memory
 };
 
 /// Squared distance from a point to a box, 0 inside.
@@ -97,7 +109,7 @@ TriangleTree::Nearest TriangleTree::search(const Vec3& p, Nearest best, double s
       continue;
     }
     for (Index i = node.begin; i < node.end; ++i) {
-      const auto& [a, b, c] = corners_[static_cast<std::size_t>(i)];
+      const auto& [a, b, c] = corners(i);
       const Vec3 point = nearest_on_triangle(p, a, b, c);
       const double d = (point - p).squaredNorm();
       const Index triangle = order_[static_cast<std::size_t>(i)];

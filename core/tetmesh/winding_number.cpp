@@ -35,7 +35,7 @@ WindingNumber::WindingNumber(const std::vector<Vec3>& points, const std::vector<
     };
     if (node.is_leaf()) {
       for (Index i = node.begin; i < node.end; ++i) {
-        const auto& [a, b, c] = tree_.corners()[static_cast<std::size_t>(i)];
+        const auto& [a, b, c] = tree_.corners(i);
         const Vec3 normal = 0.5 * (b - a).cross(c - a);
         add(normal, (a + b + c) / 3.0, normal.norm());
       }
@@ -72,7 +72,7 @@ double WindingNumber::operator()(const Vec3& p) const {
       continue;
     }
     for (Index i = node.begin; i < node.end; ++i) {
-      const auto& [a, b, c] = tree_.corners()[static_cast<std::size_t>(i)];
+      const auto& [a, b, c] = tree_.corners(i);
       half_angles += half_solid_angle(a - p, b - p, c - p);
     }
   }

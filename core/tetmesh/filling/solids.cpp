@@ -59,10 +59,10 @@ bool any_cross(const TriangleTree& first, const TriangleTree& second, const Vec3
     if (!overlap(a.min, a.max, b.min + shift, b.max + shift)) continue;
     if (a.is_leaf() && b.is_leaf()) {
       for (Index t = b.begin; t < b.end; ++t) {
-        Corners moved = second.corners()[at(t)];
+        Corners moved = second.corners(t);
         for (Vec3& corner : moved) corner += shift;
         for (Index s = a.begin; s < a.end; ++s)
-          if (cross_each_other(first.corners()[at(s)], moved)) return true;
+          if (cross_each_other(first.corners(s), moved)) return true;
       }
     } else if (b.is_leaf() || (!a.is_leaf() && a.end - a.begin >= b.end - b.begin)) {
       open.push_back({i + 1, j});
@@ -250,6 +250,11 @@ std::vector<Solid> split_solids(const SurfaceMesh& surface, const SurfaceParts& 
     }
     solid.surface.triangles.push_back(triangle);
     solid.parts.triangle_parts.push_back(part_numbers[part]);
+  }
+  for (Solid& solid : split) {  // they live as long as the filling
+    solid.surface.positions.shrink_to_fit();
+    solid.surface.triangles.shrink_to_fit();
+    solid.parts.triangle_parts.shrink_to_fit();
   }
   return split;
 }

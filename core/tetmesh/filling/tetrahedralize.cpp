@@ -115,8 +115,8 @@ StuffedMesh stuff_solid(const Job& job, const Solid& solid, const LatticeFrame& 
         fmt::format("body '{}': {} nodes where parts touched at a vertex or edge were parted, {} tetrahedra where "
                     "the body touched itself were removed",
                     job.name, mending.copied_nodes, mending.removed_tets));
-  drop_crumbs(stuffed, distance, solid.parts, job.name, job.log);
-  require_all_parts(stuffed, distance, solid.parts, job.name, job.log);
+  drop_crumbs(stuffed, distance.nearest_triangles, solid.parts, job.name, job.log);
+  require_all_parts(stuffed, distance.nearest_triangles, solid.parts, job.name, job.log);
   order_nodes(stuffed);
   return stuffed;
 }
@@ -215,9 +215,10 @@ void grade_solid(const Job& job, const Solid& solid, const ErrorBudgetParams& pa
   }();
   StuffedMesh& stuffed = filling.stuffed;
   const std::size_t filled = stuffed.mesh.tets.size();
-  drop_crumbs(stuffed, filling.distance, solid.parts, job.name, job.log);  // smaller than a cell of the base edge
-  stuffed.mesh.lattice.spacing = filling.finest_edge;                      // what is too thin is judged by that
-  require_all_parts(stuffed, filling.distance, solid.parts, job.name, job.log);
+  drop_crumbs(stuffed, filling.nearest_triangles, solid.parts, job.name,
+              job.log);                                // smaller than a cell of the base edge
+  stuffed.mesh.lattice.spacing = filling.finest_edge;  // what is too thin is judged by that
+  require_all_parts(stuffed, filling.nearest_triangles, solid.parts, job.name, job.log);
   stuffed.mesh.lattice = {};  // none of one size: the hierarchy finds coarse lattices of its own, and converges better
   order_nodes(stuffed);
   all.edge = std::max(all.edge, filling.finest_edge);
@@ -327,8 +328,12 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
                        const Threads& threads, const Log& log, StageTimes& times) {
   require_params(params, name);
   const bool embedded = params.mode == TetMode::Embedded;
-  const PreparedSurface prepared = prepare_surface(surface, {params.thickness, embedded}, name, log);
+  PreparedSurface prepared = prepare_surface(surface, {params.thickness, embedded}, name, log);
   const std::vector<Solid> solids = embedded ? std::vector<Solid>{} : take_solids(prepared, name, log);
+  if (!embedded) {  // the solids have it all
+    prepared.surface = {};
+    std::vector<CarriedPoint>().swap(prepared.carried);
+  }
   const Job job{prepared, solids, params, name, threads, log, times};
   Filling filling = fill(job);
   if (filling.tets() == 0)
