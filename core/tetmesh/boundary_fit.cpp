@@ -52,7 +52,9 @@ class BoundaryFit::Fit {
         wanted_(std::pow(params.tolerance * stuffed.mesh.lattice.spacing, 2)) {}
 
   void run() {
+    const std::vector<std::array<Vec3, 3>> corners = face_corners();
     sample_faces_.assign(samples_.size(), -1);
+    if (memory_ != nullptr) memory_->find_sample_faces(corners, sample_faces_);
     probes_.resize(stars_.nodes.size() + stars_.edges.size() + stars_.faces.size());
     std::vector<Vec3> before;
     before.reserve(stars_.nodes.size());
@@ -76,6 +78,7 @@ class BoundaryFit::Fit {
     *memory_ = {};
     memory_->reserve(before.size());
     for (std::size_t b = 0; b < before.size(); ++b) memory_->add(before[b], position_of(b));
+    memory_->set_sample_faces(corners, sample_faces_);
   }
 
   std::vector<BoundaryGap> gaps(double limit) const {
@@ -117,6 +120,13 @@ class BoundaryFit::Fit {
     for (const Index e : stars_.edges_of.of(b))
       squared = std::max(squared, (position(stars_.edges[at(e)][0]) - position(stars_.edges[at(e)][1])).squaredNorm());
     return std::sqrt(squared);
+  }
+
+  std::vector<std::array<Vec3, 3>> face_corners() const {
+    std::vector<std::array<Vec3, 3>> corners;
+    for (const auto& [nodes, element] : stars_.faces)
+      corners.push_back({position(nodes[0]), position(nodes[1]), position(nodes[2])});
+    return corners;
   }
 
   /// Moves every node to the nearest point of the surface, as far as its star allows.
@@ -246,7 +256,7 @@ class BoundaryFit::Fit {
       const double squared = (nearest_on_triangle(x, a, b, c) - x).squaredNorm();
       if (squared < near_) return {probes_[p].place, squared};
     }
-    const TriangleTree::Nearest found = tree_.nearest_from(x, probes_[p].place);
+    const TriangleTree::Nearest found = tree_.nearest_from(x, probes_[p].place, params_.quick ? near_ : -1);
     return {found.place, found.squared_distance};
   }
 

@@ -19,6 +19,7 @@ struct BoundaryFitParams {
   double max_dihedral = 155.0;  ///< degrees; likewise
   int sweeps = 4;               ///< each moves every boundary node at most once
   double tolerance = 0.15;      ///< spacings: what is nearer than this moves no node
+  bool quick = false;           ///< of what is near enough, the first triangle met will do, not only the nearest
 };
 
 /// Where the boundary and the surface are apart.

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
-#include "core/tetmesh/farthest_point.h"
+#include "core/tetmesh/filled_surface.h"
+#include "core/tetmesh/gap_refinement.h"
 #include "core/tetmesh/graded_octree.h"
 #include "core/tetmesh/graded_stuffing.h"
-#include "core/tetmesh/hidden_surface.h"
-#include "core/tetmesh/hole_caps.h"
-#include "core/tetmesh/surface_samples.h"
 
 namespace softreel {
 namespace {
@@ -43,16 +40,38 @@ constexpr int kErrorRounds = 40, kSingleRounds = 8;
 constexpr double kNarrower = 0.97;
 constexpr int kPatience = 12;
 
-/// Pieces of at most this share of the elements are loose.
-constexpr double kLooseShare = 0.02;
+/// So many base edges are tried for a count, and so many fillings on each. A filling is not to grow by more than this
+/// factor at once, nor by more than this share of what is missing: what a coarse one asks for is uncertain, and places
+/// that want several halvings come up again.
+constexpr int kBaseTries = 8, kCountRounds = 24;
+constexpr double kGrowth = 2.5, kNearer = 0.7;
 
-/// The error falls with the number of tetrahedra to about this power; met on smooth and sharp bodies alike.
-constexpr double kErrorOverCount = 0.75;
+/// Once the count is met, single places are mended this often, where gaps are so much wider than those that were
+/// refined, up to this share of the count.
+constexpr int kMendings = 1;
+constexpr double kMuchWider = 1.15, kMendingShare = 1.035;
 
-/// So many errors are tried for a count. A filling that has it ends where no gap is wider than so many errors: what
-/// comes after mends single places, and may add and spoil others.
-constexpr int kCountSteps = 14;
-constexpr double kNearlyKept = 1.3;
+/// Gaps that are still so much wider than those that were refined want more than one halving.
+constexpr double kStubborn = 3.0;
+
+/// Far from the count so many samples per tetrahedron will do.
+constexpr double kSamplesPerTet = 3.0;
+
+/// What takes too many is done over with less so many times.
+constexpr int kRetries = 3;
+
+/// The next round's gaps will be about this share of those that were refined: what is nearer need not be fitted.
+constexpr double kAhead = 0.5;
+
+/// From this share of the count on more than the error asks for is refined where nothing else is left; below it, the
+/// base edge is too long. The count goes about with this power of it.
+constexpr double kNearShare = 0.5, kCountOverBase = 2.0;
+
+/// A base edge that takes too few is shortened by no more than this at once.
+constexpr double kMostShorter = 4.0;
+
+/// A surface that so many leaves per wanted tetrahedron find no inside of has none for that count.
+constexpr double kLeavesPerTet = 4.0, kFewLeaves = 10000.0;
 
 /// How near to the wanted number is near enough.
 constexpr double kCountTolerance = 0.05;
@@ -64,32 +83,16 @@ std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-double area_of(const SurfaceMesh& surface) {
-  double area = 0;
-  for (const auto& [a, b, c] : surface.triangles)
-    area += 0.5 * (surface.positions[at(b)] - surface.positions[at(a)])
-                      .cross(surface.positions[at(c)] - surface.positions[at(a)])
-                      .norm();
-  return area;
-}
-
 /// The error at which a smooth surface takes about so many tetrahedra.
-double guess_error(const SurfaceMesh& surface, double tets) {
-  return std::sqrt(kTetsPerSquare * area_of(surface) / (kBaseShare * tets)) / kBaseEdge;
+double guess_error(double area, double tets) {
+  return std::sqrt(kTetsPerSquare * area / (kBaseShare * tets)) / kBaseEdge;
 }
 
-/// The surface as all fillings of a search see it.
-struct FilledSurface {
-  explicit FilledSurface(const SurfaceMesh& mesh)
-      : surface(mesh),
-        sampler(mesh.positions, mesh.triangles),
-        caps(mesh.positions, mesh.triangles, sampler.tree()),
-        box(used_bounds(mesh)) {}
-
-  const SurfaceMesh& surface;
-  DistanceSampler sampler;
-  HoleCaps caps;
-  Bounds box;
+/// What filling up to a count came to on one base edge.
+struct CountedFilling {
+  GradedFilling filling;
+  double count = 0;        ///< of tetrahedra
+  bool is_fitted = false;  ///< not where base edges alone took too many
 };
 
 class Filling {
@@ -97,16 +100,16 @@ class Filling {
   Filling(const FilledSurface& filled, const ErrorBudgetParams& params, const Threads& threads)
       : params_(params),
         threads_(threads),
+        filled_(filled),
         base_edge_(params.base_edge > 0 ? params.base_edge : kBaseEdge * params.error),
         error_(params.error > 0 ? params.error : base_edge_ / kBaseEdge),
-        frame_{filled.box.center(), std::ldexp(base_edge_, -params.finer)},
-        octree_(frame_, filled.box, params.finer + params.coarser),
-        sampler_(filled.sampler),
-        caps_(filled.caps),
-        visible_(find_visible(filled.surface, sampler_, error_, threads)),
-        samples_(visible_, order_of(visible_, sampler_.tree()), kSampleStep * error_) {
-    for (const Triangle& triangle : filled.surface.triangles)
-      octree_.refine(corners(filled.surface.positions, triangle), params.finer);
+        frame_{filled.box().center(), std::ldexp(base_edge_, -params.finer)},
+        octree_(frame_, filled.box(), params.finer + params.coarser),
+        visible_(filled.visible(error_, threads)),
+        samples_(filled.sample(visible_, kSampleStep * error_)) {
+    const std::vector<Vec3>& x = filled.surface().positions;
+    for (const auto& [a, b, c] : filled.surface().triangles)
+      octree_.refine({x[at(a)], x[at(b)], x[at(c)]}, params.finer);
   }
 
   GradedFilling run() {
@@ -115,50 +118,52 @@ class Filling {
     for (int round = 0; round < rounds; ++round) {
       filling = {};  // before there is the next
       filling = fill();
-      std::vector<BoundaryGap> gaps = fit(filling.stuffed, round);
-      add_loose_pieces(filling.stuffed, gaps);
+      const bool is_first = round < kFirstRounds;
+      std::vector<BoundaryGap> gaps = fit(filling.stuffed, is_first ? kFirstSweeps : kSweeps,
+                                          (is_first ? kFirstLimit : kEnough) * error_, samples_);
+      const std::vector<BoundaryGap> loose = filled_.find_loose_pieces(filling.stuffed);
+      gaps.insert(gaps.end(), loose.begin(), loose.end());
       const bool is_certain = gaps.empty();
-      if (is_certain) gaps = find_gaps(filling.stuffed);
+      if (is_certain) gaps = filled_.find_gaps(filling.stuffed, visible_, kCertain * error_, threads_);
       filling.is_kept = gaps.empty();
       const double margin = round < kSingleRounds ? 0.0 : 0.5;
-      if (has_count(filling) && widest(gaps) < kNearlyKept * error_) break;
       if (!gaps.empty() && is_stuck(gaps, round)) break;
       if (round + 1 == rounds || refine(filling.stuffed, gaps, margin)) continue;
       // Samples that no size reaches hide what lies between others.
-      if (!is_certain) gaps = find_gaps(filling.stuffed);
+      if (!is_certain) gaps = filled_.find_gaps(filling.stuffed, visible_, kCertain * error_, threads_);
       if (is_certain || !refine(filling.stuffed, gaps, 0.0)) break;
     }
     return filling;
   }
 
+  /// Refines the widest gaps first, until there are as many tetrahedra as wanted, or more with base edges alone, or too
+  /// few and nothing left to refine.
+  CountedFilling run_to_count() {
+    CountedFilling best;
+    std::optional<Refinement> last;
+    int mendings = 0, retries = 0;
+    for (int round = 0; round < kCountRounds; ++round) {
+      GradedFilling filling = fill();
+      const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
+      const bool is_too_many = count > (1 + kCountTolerance) * params_.tets;
+      if (is_too_many && !last) return {std::move(filling), count, false};
+      if (is_too_many && mendings > 0) break;
+      if (is_too_many && last->count > 0 && retries++ < kRetries) {
+        last->added *= (params_.tets - last->count) / (count - last->count);
+        if (!refine(*last, best.filling.stuffed.mesh.nodes)) break;
+        continue;
+      }
+      if (last) learn_yield(*last, count);
+      last = find_refinement(filling.stuffed, count);
+      best = {std::move(filling), count, true};
+      if (is_too_many || is_hopeless(count)) break;
+      if (count >= (1 - kCountTolerance) * params_.tets && mendings++ == kMendings) break;
+      if (!refine(*last, best.filling.stuffed.mesh.nodes)) break;
+    }
+    return best;
+  }
+
  private:
-  static std::array<Vec3, 3> corners(const std::vector<Vec3>& points, const Triangle& triangle) {
-    return {points[at(triangle[0])], points[at(triangle[1])], points[at(triangle[2])]};
-  }
-
-  /// The triangles in the order of the tree; those that are not in it as they come.
-  static std::vector<Index> order_of(const SurfaceMesh& visible, const TriangleTree& tree) {
-    if (visible.triangles.size() == tree.order().size()) return tree.order();
-    std::vector<Index> order(visible.triangles.size());
-    std::iota(order.begin(), order.end(), 0);
-    return order;
-  }
-
-  /// What the boundary has to follow; the surface as it is, unless it overlaps itself.
-  static SurfaceMesh find_visible(const SurfaceMesh& surface, const DistanceSampler& sampler, double error,
-                                  const Threads& threads) {
-    if (!sampler.near_overlaps().empty()) return without_hidden(surface, sampler.near_overlaps(), error, threads);
-    SurfaceMesh visible;
-    visible.positions = surface.positions;
-    visible.triangles = surface.triangles;
-    return visible;
-  }
-
-  bool has_count(const GradedFilling& filling) const {
-    const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
-    return params_.tets > 0 && std::abs(count / params_.tets - 1) <= kCountTolerance;
-  }
-
   /// Whether the widest gap has long been no narrower than before: no size mends it. The rim of a hole can be such a
   /// gap.
   bool is_stuck(const std::vector<BoundaryGap>& gaps, int round) {
@@ -170,31 +175,70 @@ class Filling {
     return round - narrowest_round_ > kPatience;
   }
 
-  /// Small pieces beside the main ones hang by necks that are thinner than the tetrahedra: gaps as wide as they are.
-  void add_loose_pieces(const StuffedMesh& stuffed, std::vector<BoundaryGap>& gaps) const {
-    const TetMesh& mesh = stuffed.mesh;
-    const std::vector<Index> pieces = face_connected_pieces(mesh);
-    if (pieces.empty()) return;
-    std::vector<Index> counts(at(*std::max_element(pieces.begin(), pieces.end()) + 1), 0);
-    for (const Index piece : pieces) ++counts[at(piece)];
-    if (counts.size() == 1) return;
-    for (const BoundaryFace& face : find_surface_faces(stuffed)) {
-      if (counts[at(pieces[at(face.element)])] > kLooseShare * static_cast<double>(pieces.size())) continue;
-      const Vec3& p = mesh.nodes[at(face.nodes[0])];
-      gaps.push_back({sampler_.tree().nearest(p).point, p, face.nodes});
-    }
+  /// What is to be refined of a filling on the way to a count; kept to do it over where it takes too many tetrahedra.
+  struct Refinement {
+    GradedOctree octree;             ///< before
+    std::vector<BoundaryGap> gaps;   ///< the widest first
+    std::vector<BoundaryGap> loose;  ///< of loose pieces: refined whatever it takes
+    double count = 0;                ///< of the filling
+    double added = 0, expected = 0;  ///< tetrahedra: wanted, and expected of what was refined
+  };
+
+  /// Fits, and lists the gaps. Far from the count a short fit to some of the samples will do, and gaps below the error
+  /// are let be: they want another base edge. Where the count is met, what is much wider than the others is left to
+  /// mend.
+  Refinement find_refinement(StuffedMesh& stuffed, double count) {
+    const double share = count / params_.tets, error = base_edge_ / kBaseEdge;
+    const bool is_near = share >= kNearShare, is_met = share >= 1 - kCountTolerance;
+    const double wide = narrowest_ < 1e300 ? narrowest_ : error;
+    const double limit = is_met               ? kMuchWider * wide
+                         : !is_near           ? kEnough * error
+                         : narrowest_ < 1e300 ? kAhead * wide
+                                              : 0;
+    Refinement found{octree_, {}, {}, count};
+    found.gaps = fit(stuffed, kFirstSweeps, limit, thin_samples(count));
+    std::stable_sort(found.gaps.begin(), found.gaps.end(),
+                     [](const BoundaryGap& a, const BoundaryGap& b) { return width_of(a) > width_of(b); });
+    if (is_near) found.loose = filled_.find_loose_pieces(stuffed);
+    const double next = std::min(kGrowth * share, share + kNearer * (1 - share));
+    found.added = (is_met ? kMendingShare : next) * params_.tets - count;
+    found.added = count > 0 ? found.added / yield_ : 1e300;
+    return found;
   }
 
-  static double widest(const std::vector<BoundaryGap>& gaps) {
-    double width = 0;
-    for (const BoundaryGap& gap : gaps) width = std::max(width, (gap.on_surface - gap.on_boundary).norm());
-    return width;
+  /// Some samples per tetrahedron; else all.
+  SurfaceSamples thin_samples(double count) const {
+    const auto step = static_cast<std::size_t>(static_cast<double>(samples_.size()) / (kSamplesPerTet * count + 1000));
+    return step > 1 ? samples_.thinned(step) : samples_;
+  }
+
+  /// False if nothing is left that may be refined.
+  bool refine(Refinement& asked, const std::vector<Vec3>& nodes) {
+    octree_ = asked.octree;
+    const bool any = refine_gaps(octree_, asked.loose, nodes, 0.0);
+    const WidestRefined done = refine_widest(octree_, asked.gaps, nodes, known_,
+                                             {asked.added, narrowest_ < 1e300 ? kStubborn * narrowest_ : 1e300});
+    asked.expected = done.added_tets;
+    if (done.halved == 0) return any;
+    if (done.narrowest > 0) narrowest_ = std::min(narrowest_, done.narrowest);
+    error_ = std::max(base_edge_ / kBaseEdge, kAhead * narrowest_);
+    return true;
+  }
+
+  /// Whether what has no inside at such leaves has none.
+  bool is_hopeless(double count) const {
+    return count == 0 && static_cast<double>(octree_.cells().size()) > kLeavesPerTet * params_.tets + kFewLeaves;
+  }
+
+  /// How many tetrahedra came of one that was expected.
+  void learn_yield(const Refinement& done, double count) {
+    if (done.expected > 0 && done.count > 0) yield_ = std::clamp((count - done.count) / done.expected, 0.5, 2.0);
   }
 
   SurfaceDistance sample_nodes() const {
     LatticeNodeSet nodes = octree_.nodes();
     const std::vector<double> widths = octree_.widths(nodes);
-    return sampler_.sample(frame_, std::move(nodes), widths, known_, threads_);
+    return filled_.sampler().sample(frame_, std::move(nodes), widths, known_, threads_);
   }
 
   GradedFilling fill() {
@@ -208,15 +252,16 @@ class Filling {
     return filling;
   }
 
-  /// Fits, and returns what is still too far apart.
-  std::vector<BoundaryGap> fit(StuffedMesh& stuffed, int round) {
+  /// Fits, and returns what is still further apart than `limit`, m.
+  std::vector<BoundaryGap> fit(StuffedMesh& stuffed, int sweeps, double limit, const SurfaceSamples& samples) {
     BoundaryFitParams fit_params;
     fit_params.tolerance = params_.fit_tolerance * error_ / base_edge_;
-    fit_params.sweeps = round < kFirstRounds ? kFirstSweeps : kSweeps;
+    fit_params.sweeps = sweeps;
+    fit_params.quick = true;
     if (stuffed.mesh.tets.empty()) return everywhere();
-    const BoundaryFit fitted(stuffed, sampler_.tree(), samples_, fit_params, threads_, &memory_);
-    std::vector<BoundaryGap> gaps = fitted.gaps((round < kFirstRounds ? kFirstLimit : kEnough) * error_);
-    leave_out_holes(gaps);
+    const BoundaryFit fitted(stuffed, filled_.tree(), samples, fit_params, threads_, &memory_);
+    std::vector<BoundaryGap> gaps = fitted.gaps(limit);
+    filled_.leave_out_caps(gaps);
     return gaps;
   }
 
@@ -227,118 +272,63 @@ class Filling {
     return gaps;
   }
 
-  /// No size brings the cap of a hole nearer to the surface.
-  void leave_out_holes(std::vector<BoundaryGap>& gaps) const {
-    if (!caps_.any()) return;
-    std::erase_if(gaps, [&](const BoundaryGap& gap) { return gap.from_boundary && caps_.contain(gap.on_boundary); });
-  }
-
-  /// The faces of the boundary that have a surface to follow.
-  SurfaceMesh without_caps(const std::vector<Vec3>& nodes, const std::vector<Triangle>& faces) const {
-    if (caps_.any()) return caps_.without_caps(nodes, faces, kCertain * error_, threads_);
-    SurfaceMesh all;
-    all.positions = nodes;
-    all.triangles = faces;
-    return all;
-  }
-
-  /// All gaps, also between samples and inside faces.
-  std::vector<BoundaryGap> find_gaps(const StuffedMesh& stuffed) const {
-    const double limit = kCertain * error_;
-    std::vector<Triangle> faces;
-    for (const BoundaryFace& face : find_surface_faces(stuffed)) faces.push_back(face.nodes);
-    const TriangleTree boundary(stuffed.mesh.nodes, faces);
-    std::vector<BoundaryGap> gaps;
-    for (const Vec3& p : find_far_points(visible_.positions, visible_.triangles, boundary, limit, threads_)) {
-      const TriangleTree::Nearest found = boundary.nearest(p);
-      gaps.push_back({p, found.point, faces[at(found.triangle)]});
-    }
-    const SurfaceMesh followed = without_caps(stuffed.mesh.nodes, faces);
-    for (const Vec3& p : find_far_points(followed.positions, followed.triangles, sampler_.tree(), limit, threads_))
-      gaps.push_back({sampler_.tree().nearest(p).point, p, faces[at(boundary.nearest(p).triangle)], true});
-    return gaps;
-  }
-
-  /// Halves the largest leaves at each gap, and those within `margin` of their width. False if there is none that may
-  /// be halved.
   bool refine(const StuffedMesh& stuffed, const std::vector<BoundaryGap>& gaps, double margin) {
-    struct Wish {
-      Vec3 point;
-      std::int32_t level;
-    };
-    std::vector<Wish> wishes;
-    for (const BoundaryGap& gap : gaps) {
-      std::vector<Vec3> points{gap.on_surface, gap.on_boundary};
-      if (gap.face[0] >= 0) {
-        const std::array<Vec3, 3> face = corners(stuffed.mesh.nodes, gap.face);
-        for (std::size_t k = 0; k < 3; ++k)
-          points.emplace_back(0.8 * face[k] + 0.1 * (face[(k + 1) % 3] + face[(k + 2) % 3]));
-      }
-      std::int32_t most = 0;
-      for (const Vec3& p : points) most = std::max(most, octree_.level_at(p));
-      for (const Vec3& p : points)
-        if (most > 0 && octree_.level_at(p) == most) wishes.push_back({p, most - 1});
-    }
-    const std::size_t before = octree_.cells().size();
-    for (const Wish& wish : wishes) octree_.refine(wish.point, wish.level, margin);
-    return octree_.cells().size() > before;
+    return refine_gaps(octree_, gaps, stuffed.mesh.nodes, margin);
   }
 
   const ErrorBudgetParams& params_;
   const Threads& threads_;
+  const FilledSurface& filled_;
   double base_edge_, error_;
-  double narrowest_ = 1e300;  ///< the least of the widest gaps, and the round it was met in
+  double narrowest_ = 1e300;  ///< for an error: the least of the widest gaps, and the round it was met in; for a
+                              ///< count: of those that were refined
   int narrowest_round_ = 0;
   LatticeFrame frame_;
   GradedOctree octree_;
-  const DistanceSampler& sampler_;
-  const HoleCaps& caps_;
   SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap
   SurfaceSamples samples_;
+  double yield_ = 1;  ///< tetrahedra that came of one that was expected
   FitMemory memory_;
   SurfaceDistance known_;  ///< of the filling before
 };
 
-}  // namespace
-
-namespace {
-
-/// An error with the number of tetrahedra that it takes, as logarithms.
+/// A base edge with the number of tetrahedra that it came to, as logarithms.
 struct Tried {
-  double error, count;
+  double edge, count;
 };
 
-/// The next error to try for a count: between the nearest ones that gave too many and too few, or from one of them by
-/// the usual slope.
-double next_error(const std::optional<Tried>& few, const std::optional<Tried>& many, double wanted) {
-  if (!few || !many) {
-    const Tried& known = few ? *few : *many;
-    return known.error + kErrorOverCount * (known.count - wanted);
-  }
+/// The next base edge to try for a count: between the nearest ones that gave too many and too few, or from one of them
+/// by the usual slope. Where base edges alone were too many, longer ones are to leave some for refinement.
+double next_edge(const std::optional<Tried>& few, const std::optional<Tried>& many, double wanted) {
+  if (!many) return few->edge + std::max((few->count - wanted) / kCountOverBase, -std::log(kMostShorter));
+  if (!few) return many->edge + (many->count - wanted - std::log(kNearShare)) / kCountOverBase;
   // Not too near to either, lest counts that jump stop the search.
   const double share = std::clamp((wanted - few->count) / (many->count - few->count), 0.15, 0.85);
-  return few->error + share * (many->error - few->error);
+  return few->edge + share * (many->edge - few->edge);
 }
 
 GradedFilling fill_to_count(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads) {
   const FilledSurface filled(surface);
-  GradedFilling best;
-  double best_miss = 1e300, error = std::log(guess_error(surface, params.tets));
+  CountedFilling best;
+  ErrorBudgetParams on_base = params;
+  double best_miss = 1e300, best_edge = 0, edge = std::log(kBaseEdge * guess_error(filled.area(), params.tets));
   std::optional<Tried> few, many;
-  for (int step = 0; step < kCountSteps && best_miss > kCountTolerance; ++step) {
-    ErrorBudgetParams to_error = params;
-    to_error.error = std::exp(error);
-    GradedFilling filling = Filling(filled, to_error, threads).run();
-    const double count = std::max(1.0, static_cast<double>(filling.stuffed.mesh.tets.size()));
-    (count < params.tets ? few : many) = Tried{error, std::log(count)};
-    const double miss = std::abs(count / params.tets - 1);
+  for (int step = 0; step < kBaseTries && best_miss > kCountTolerance; ++step) {
+    on_base.base_edge = std::exp(edge);
+    CountedFilling counted = Filling(filled, on_base, threads).run_to_count();
+    const double count = std::max(1.0, counted.count);
+    const double miss = counted.count > 0 ? std::abs(count / params.tets - 1) : 1e200;
+    (count < params.tets ? few : many) = Tried{edge, std::log(count)};
     if (miss < best_miss) {
       best_miss = miss;
-      best = std::move(filling);
+      best_edge = on_base.base_edge;
+      best = std::move(counted);
     }
-    error = next_error(few, many, std::log(params.tets));
+    if (counted.count == 0 && !many) break;
+    edge = next_edge(few, many, std::log(params.tets));
   }
-  return best;
+  if (best.is_fitted) return std::move(best.filling);
+  return Filling(filled, {.base_edge = best_edge}, threads).run();
 }
 
 }  // namespace

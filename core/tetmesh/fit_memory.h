@@ -2,13 +2,16 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
+#include "core/tetmesh/key_index.h"
 #include "core/tetmesh/number_table.h"
 
 namespace softreel {
 
-/// Where nodes were before and after an earlier fit, so that a fit of a similar mesh begins there.
+/// Where nodes were before and after an earlier fit, so that a fit of a similar mesh begins there, and which face was
+/// near each sample, which is where to look first.
 class FitMemory {
  public:
   /// Of nodes that began at one place the first counts.
@@ -17,11 +20,19 @@ class FitMemory {
   /// Where the fit took a node that began at exactly `before`; null if there was none.
   const Vec3* find(const Vec3& before) const;
 
+  /// faces: their corners before the fit; sample_faces: per sample the number of the face that came to be near it.
+  void set_sample_faces(const std::vector<std::array<Vec3, 3>>& faces, const std::vector<Index>& sample_faces);
+  /// Fills in the faces that samples had, by their numbers in `faces`, corners before the fit; leaves what it does not
+  /// know. Nothing if there were not as many samples.
+  void find_sample_faces(const std::vector<std::array<Vec3, 3>>& faces, std::vector<Index>& sample_faces) const;
+
  private:
   Index find_step(const Vec3& before) const;
 
   NumberTable table_;
+  KeyIndex face_keys_;
   std::vector<std::array<Vec3, 2>> steps_;
+  std::vector<Index> sample_faces_;  ///< per sample: of face_keys_
 };
 
 }  // namespace softreel

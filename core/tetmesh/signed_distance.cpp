@@ -19,6 +19,9 @@ constexpr double kHoleSlope = 8.0 * kBandVoxels;
 
 constexpr std::int64_t kGrain = 256;
 
+/// No triangle is within this share of a node's distance, whatever the round-off.
+constexpr double kFree = 0.999;
+
 /// So many rows along the box's diagonal are looked at for overlaps.
 constexpr double kRows = 800;
 
@@ -107,6 +110,19 @@ DistanceSampler::DistanceSampler(const std::vector<Vec3>& positions, const std::
   near_overlaps_ = find_near_overlaps(positions, triangles, {box.center(), box.diagonal() / kRows});
 }
 
+double DistanceSampler::sign(double distance, const LatticeFrame& frame, const LatticeNode& node, const Vec3& p,
+                             const SignedPlace& last) const {
+  if (winding_) {
+    const double beyond = std::abs((*winding_)(p)) - 0.5;
+    const double limited = std::min(distance, 0.5 * frame.spacing * kHoleSlope * std::abs(beyond));
+    return beyond > 0 ? -limited : limited;
+  }
+  // What lies within the distance of a place is on its side of the surface.
+  const bool is_known = last.value != 0 && (p - last.point).norm() < kFree * std::max(distance, std::abs(last.value));
+  const bool inside = is_known ? last.value < 0 : winding_of_node(tree_, frame, node) != 0;
+  return inside ? -distance : distance;
+}
+
 SurfaceDistance DistanceSampler::sample(const LatticeFrame& frame, LatticeNodeSet nodes,
                                         const std::vector<double>& reaches, const SurfaceDistance& known,
                                         const Threads& threads) const {
@@ -117,26 +133,20 @@ SurfaceDistance DistanceSampler::sample(const LatticeFrame& frame, LatticeNodeSe
   result.lattice.values.resize(list.size());
   result.nearest_triangles.resize(list.size());
   threads.for_chunks(static_cast<std::int64_t>(list.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    SignedPlace last{Vec3::Zero(), 0};
+    Index guess = -1;
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      if (const Index number = known.lattice.nodes.find(list[i]); number >= 0) {
-        result.lattice.values[i] = known.lattice.values[static_cast<std::size_t>(number)];
-        result.nearest_triangles[i] = known.nearest_triangles[static_cast<std::size_t>(number)];
-        continue;
-      }
       const Vec3 p = lattice_position(frame, list[i]);
-      const TriangleTree::Nearest found =
-          tree_.nearest(p, reaches[i] * reaches[i], [](Index, const Vec3&) { return true; });
-      double distance = std::sqrt(found.squared_distance);
-      bool inside = false;
-      if (!winding_) {
-        inside = winding_of_node(tree_, frame, list[i]) != 0;
+      if (const Index number = known.lattice.nodes.find(list[i]); number >= 0) {
+        last = {p, known.lattice.values[static_cast<std::size_t>(number)]};
+        result.nearest_triangles[i] = known.nearest_triangles[static_cast<std::size_t>(number)];
       } else {
-        const double beyond = std::abs((*winding_)(p)) - 0.5;
-        distance = std::min(distance, 0.5 * frame.spacing * kHoleSlope * std::abs(beyond));
-        inside = beyond > 0;
+        const TriangleTree::Nearest found = tree_.nearest_from(p, guess, -1, reaches[i] * reaches[i]);
+        if (found.place >= 0) guess = found.place;
+        last = {p, sign(std::sqrt(found.squared_distance), frame, list[i], p, last)};
+        result.nearest_triangles[i] = found.triangle;
       }
-      result.lattice.values[i] = inside ? -distance : distance;
-      result.nearest_triangles[i] = found.triangle;
+      result.lattice.values[i] = last.value;
     }
   });
   return result;

@@ -45,6 +45,15 @@ class DistanceSampler {
   const std::vector<std::uint8_t>& near_overlaps() const { return near_overlaps_; }
 
  private:
+  struct SignedPlace {
+    Vec3 point;
+    double value;  ///< its signed distance, m
+  };
+
+  /// The distance of a node at `p` with its sign. last: a place near it, of value 0 if there is none.
+  double sign(double distance, const LatticeFrame& frame, const LatticeNode& node, const Vec3& p,
+              const SignedPlace& last) const;
+
   TriangleTree tree_;
   std::vector<std::uint8_t> near_overlaps_;
   std::optional<WindingNumber> winding_;  ///< of an open surface

@@ -17,9 +17,8 @@ void add_kept(const Corners& x, double step, int depth, const LeavesOut& leaves_
   const Vec3 middle = (x[0] + x[1] + x[2]) / 3;
   const bool left_out = leaves_out(x, middle);
   const double longest = std::max({(x[0] - x[1]).norm(), (x[1] - x[2]).norm(), (x[2] - x[0]).norm()});
-  const bool agrees = std::all_of(
-      x.begin(), x.end(), [&](const Vec3& corner) { return leaves_out(x, 0.95 * corner + 0.05 * middle) == left_out; });
-  if (longest <= step || depth == kMaxQuarterings || agrees) {
+  const auto agrees = [&](const Vec3& corner) { return leaves_out(x, 0.95 * corner + 0.05 * middle) == left_out; };
+  if (longest <= step || depth == kMaxQuarterings || std::all_of(x.begin(), x.end(), agrees)) {
     if (!left_out) kept.push_back(x);
     return;
   }

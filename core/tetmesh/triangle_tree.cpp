@@ -71,7 +71,8 @@ void TriangleTree::take_corners(const Given& given) {
   points_.shrink_to_fit();
 }
 
-TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, double squared_enough) const {
+TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, double squared_enough,
+                                                 double squared_limit) const {
   Nearest guess;
   if (place >= 0) {
     const auto& [a, b, c] = corners(place);
@@ -79,6 +80,10 @@ TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, dou
     guess.triangle = order_[static_cast<std::size_t>(place)];
     guess.squared_distance = (guess.point - p).squaredNorm();
     guess.place = place;
+  }
+  if (guess.squared_distance > squared_limit) {
+    guess = {};
+    guess.squared_distance = squared_limit;
   }
   return search(p, guess, squared_enough, [](Index, const Vec3&) { return true; });
 }

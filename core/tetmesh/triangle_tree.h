@@ -39,8 +39,8 @@ class TriangleTree {
   }
 
   /// The same, quicker from a guess: the place in order() of a triangle that may be near, -1 for none. Of triangles
-  /// nearer than sqrt(squared_enough) the first one met will do.
-  Nearest nearest_from(const Vec3& p, Index place, double squared_enough = -1) const;
+  /// nearer than sqrt(squared_enough) the first one met will do; there may be none within sqrt(squared_limit).
+  Nearest nearest_from(const Vec3& p, Index place, double squared_enough = -1, double squared_limit = 1e300) const;
 
   const std::vector<Node>& nodes() const { return nodes_; }
   /// Numbers of the triangles in the order of the leaves.

@@ -77,7 +77,7 @@ TEST(FillToError, KeepsToItsBudgetOnSmoothSharpAndThinSurfaces) {
         Case{"cone", cone(), 2}, Case{"overlapping balls", overlapping_balls(), 2}, Case{"dumbbell", dumbbell(), 2}}) {
     SCOPED_TRACE(name);
     std::vector<std::string> lines;
-    const double error = 0.006 * used_bounds(surface).diagonal();
+    const double error = 0.008 * used_bounds(surface).diagonal();
     const TetMesh mesh = fill(surface, error, lines);
     EXPECT_LE(measure_deviation(surface, mesh, Threads(1)).two_way(), error);
     expect_good_graded(mesh);
@@ -130,7 +130,7 @@ TetMesh fill_graded(const SurfaceMesh& surface, double edge, std::int64_t tets, 
 
 TEST(FillToCount, MeetsItAndIsNearerToTheSurfaceThanALattice) {
   for (const SurfaceMesh& surface : {spiked_ball(), cone(), dumbbell()})
-    for (const std::int64_t tets : {6000, 20000}) {
+    for (const std::int64_t tets : {5000, 12000}) {
       const TetMesh graded = fill_graded(surface, 0, tets);
       EXPECT_NEAR(static_cast<double>(graded.tets.size()) / static_cast<double>(tets), 1.0, 0.05);
       expect_good_graded(graded);
@@ -143,7 +143,7 @@ TEST(FillToCount, MeetsItAndIsNearerToTheSurfaceThanALattice) {
 }
 
 TEST(FillToCount, GivesEqualBitsAtOneAndThreeThreads) {
-  const TetMesh one = fill_graded(spiked_ball(), 0, 8000), three = fill_graded(spiked_ball(), 0, 8000, 3);
+  const TetMesh one = fill_graded(spiked_ball(), 0, 5000), three = fill_graded(spiked_ball(), 0, 5000, 3);
   EXPECT_EQ(one.nodes, three.nodes);
   EXPECT_EQ(one.tets, three.tets);
 }
@@ -162,13 +162,13 @@ TEST(FillToCount, WithAnEdgeIsAsFineAtTheSurfaceAndHasFewerInside) {
 
 TEST(FillToError, DoesNotRefineTheCapsOfHoles) {
   // No size brings the cap of the hole, which is as wide as 0.9, nearer to the surface.
-  SurfaceMesh surface = test::make_sphere(1, 24, Vec3::Zero());
+  SurfaceMesh surface = test::make_sphere(1, 20, Vec3::Zero());
   std::erase_if(surface.triangles, [&](const Triangle& triangle) {
     return std::ranges::all_of(triangle,
                                [&](Index v) { return surface.positions[static_cast<std::size_t>(v)][1] < -0.9; });
   });
   std::vector<std::string> lines;
-  const TetMesh mesh = fill(surface, 0.02, lines);
+  const TetMesh mesh = fill(surface, 0.03, lines);
   double near_volume = 0, near_count = 0;
   for (const auto& [a, b, c, d] : mesh.tets) {
     const Vec3 &x = mesh.nodes[static_cast<std::size_t>(a)], &y = mesh.nodes[static_cast<std::size_t>(b)],
@@ -179,7 +179,7 @@ TEST(FillToError, DoesNotRefineTheCapsOfHoles) {
   }
   ASSERT_GT(near_count, 0);
   // A lattice tetrahedron has a twelfth of the cube of its long edge. In flat places edges are 12 budgets long.
-  EXPECT_GT(std::cbrt(12 * near_volume / near_count), 3 * 0.02);
+  EXPECT_GT(std::cbrt(12 * near_volume / near_count), 3 * 0.03);
 }
 
 TEST(MeasureDeviation, LeavesOutWhatOverlapsHide) {
