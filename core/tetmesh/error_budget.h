@@ -28,9 +28,9 @@ struct GradedFilling {
 
 /// Fills, fits, measures, and refines where the boundary and the surface are further apart than `error`, until they are
 /// nowhere, or the finest edge is reached there, or nothing helps any more. Caps of holes (hole_caps.h) do not count.
-/// With `tets` the error is searched that takes so many, within 5 %; with base_edge alone there is no refinement. The
-/// boundary is a manifold. Equal bits at any number of threads. Cost: about five times that of the last mesh, a search
-/// a few times that.
+/// With `tets` the widest gaps are refined first until there are so many, within 5 %; the base edge is chosen, again
+/// where one has too many by itself or leaves nothing to refine. With base_edge alone there is no refinement. The
+/// boundary is a manifold. Equal bits at any number of threads. Cost: about five times that of the last mesh.
 GradedFilling fill_graded(const SurfaceMesh& surface, const ErrorBudgetParams& params, const Threads& threads);
 
 }  // namespace softreel

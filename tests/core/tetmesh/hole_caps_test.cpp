@@ -53,14 +53,14 @@ TEST(HoleCaps, AreWhereTheWindingNumberPassesAHalfOffTheSurface) {
 }
 
 TEST(MeasureDeviation, OfABallWithAHoleIsThatOfTheRest) {
-  const double edge = 0.16;
+  const double edge = 0.18;
   const double closed = [&] {
     const SurfaceMesh ball = test::make_sphere(1, 24, Vec3::Zero());
     const SurfaceDeviation deviation = measure_deviation(ball, fill(ball, {.edge = edge}), Threads(1));
     EXPECT_EQ(deviation.cap_share, 0);
     return deviation.two_way();
   }();
-  for (const double height : {-0.85, -0.5, 0.0}) {
+  for (const double height : {-0.85, 0.0}) {
     SCOPED_TRACE(height);
     const SurfaceMesh ball = holed_sphere(height);
     const TetMesh mesh = fill(ball, {.edge = edge});
