@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "render/image/image.h"
 #include "render/scene/light.h"
 
@@ -29,12 +30,13 @@ struct DisplayImage {
 DisplayImage over_grey(DisplayImage image);
 
 /// Channels R, G, B times 2^exposure, through the view transform, rounded to 8 bits (no dithering: equal frames are
-/// equal bits). A channel A becomes the alpha; the colours are divided by it first.
-DisplayImage to_display(const Image& image, ViewTransform view, float exposure);
+/// equal bits). A channel A becomes the alpha; the colours are divided by it first. threads: as of encode_png.
+DisplayImage to_display(const Image& image, ViewTransform view, float exposure, const Threads* threads = nullptr);
 
 /// Bytes of a PNG / EXR file; the caller writes them, so that all files of a run are written in one way. The bytes
-/// depend on the pixels only (no dates, no host names).
-std::vector<std::uint8_t> encode_png(const DisplayImage& image);
+/// depend on the pixels only (no dates, no host names, no threads). threads: that share the work; null: the calling
+/// one.
+std::vector<std::uint8_t> encode_png(const DisplayImage& image, const Threads* threads = nullptr);
 std::vector<std::uint8_t> encode_exr(const Image& image);
 
 /// Reads back what the encoders wrote, and any RGB(A) PNG / scan-line EXR. Throws input_error naming the file.

@@ -1,7 +1,10 @@
 #include "render/image/view_transform.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "core/base/check.h"
 
@@ -48,6 +51,42 @@ std::uint8_t to_byte(float code) {
   return static_cast<std::uint8_t>(std::lround(255 * code));
 }
 
+/// to_byte(srgb_encode(x)) without the power: a byte's values are the floats from its first one to the next one's.
+class SrgbBytes {
+ public:
+  SrgbBytes() {
+    // Floats of 0 or more are ordered as their bits are.
+    for (int code = 1; code < 256; ++code) {
+      std::uint32_t below = 0, first = std::bit_cast<std::uint32_t>(1.0f);
+      while (first - below > 1) {
+        const std::uint32_t middle = below + (first - below) / 2;
+        (to_byte(srgb_encode(std::bit_cast<float>(middle))) >= code ? first : below) = middle;
+      }
+      first_[static_cast<std::size_t>(code)] = std::bit_cast<float>(first);
+    }
+    first_[256] = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < starts_.size(); ++k)
+      starts_[k] = to_byte(srgb_encode(std::bit_cast<float>(static_cast<std::uint32_t>(k + kFirst) << kShift)));
+  }
+
+  std::uint8_t operator()(float linear) const {
+    if (!(linear >= first_[1])) return 0;  // what is no number too, as in srgb_encode
+    if (linear >= 1) return 255;
+    std::size_t code = starts_[(std::bit_cast<std::uint32_t>(linear) >> kShift) - kFirst];
+    while (linear >= first_[code + 1]) ++code;
+    return static_cast<std::uint8_t>(code);
+  }
+
+ private:
+  /// Floats with equal sign, exponent and 7 bits of mantissa share a start: not more than a few bytes.
+  static constexpr int kShift = 16;
+  static constexpr std::uint32_t kFirst =
+      std::bit_cast<std::uint32_t>(0x1p-13f) >> kShift;  ///< below the first of byte 1
+  static constexpr std::uint32_t kEnd = std::bit_cast<std::uint32_t>(1.0f) >> kShift;
+  std::array<float, 257> first_{};                    ///< least value of each byte; of byte 0 not used
+  std::array<std::uint8_t, kEnd - kFirst> starts_{};  ///< byte of the least value with these bits
+};
+
 }  // namespace
 
 Vec3f apply_view(ViewTransform view, const Vec3f& linear) {
@@ -56,7 +95,12 @@ Vec3f apply_view(ViewTransform view, const Vec3f& linear) {
   return linear.cwiseMax(0.0f).cwiseMin(1.0f);
 }
 
-DisplayImage to_display(const Image& image, ViewTransform view, float exposure) {
+std::uint8_t srgb_byte(float linear) {
+  static const SrgbBytes bytes;
+  return bytes(linear);
+}
+
+DisplayImage to_display(const Image& image, ViewTransform view, float exposure, const Threads* threads) {
   const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
   CHECK(r != nullptr);
   CHECK(g != nullptr);
@@ -66,18 +110,26 @@ DisplayImage to_display(const Image& image, ViewTransform view, float exposure) 
   out.pixels.resize(3 * r->pixels.size());
   const Channel* a = image.find("A");
   if (a != nullptr) out.alpha.resize(r->pixels.size());
-  for (std::size_t k = 0; k < r->pixels.size(); ++k) {
-    Vec3f linear(r->pixels[k], g->pixels[k], b->pixels[k]);
-    if (a != nullptr) {
-      const float alpha = std::clamp(a->pixels[k], 0.0f, 1.0f);
-      out.alpha[k] = static_cast<std::uint8_t>(std::lround(255 * alpha));
-      if (alpha > 0) linear /= alpha;
+  const auto develop = [&](std::int64_t begin, std::int64_t end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      Vec3f linear(r->pixels[k], g->pixels[k], b->pixels[k]);
+      if (a != nullptr) {
+        const float alpha = std::clamp(a->pixels[k], 0.0f, 1.0f);
+        out.alpha[k] = static_cast<std::uint8_t>(std::lround(255 * alpha));
+        if (alpha > 0) linear /= alpha;
+      }
+      const Vec3f display = apply_view(view, scale * linear);
+      for (int c = 0; c < 3; ++c)
+        out.pixels[3 * k + static_cast<std::size_t>(c)] =
+            view == ViewTransform::Raw ? to_byte(display[c]) : srgb_byte(display[c]);
     }
-    const Vec3f display = apply_view(view, scale * linear);
-    for (int c = 0; c < 3; ++c)
-      out.pixels[3 * k + static_cast<std::size_t>(c)] =
-          to_byte(view == ViewTransform::Raw ? display[c] : srgb_encode(display[c]));
-  }
+  };
+  const auto pixels = static_cast<std::int64_t>(r->pixels.size());
+  constexpr std::int64_t kChunk = 1 << 15;
+  if (threads != nullptr)
+    threads->for_chunks(pixels, kChunk, develop);
+  else
+    develop(0, pixels);
   return out;
 }
 

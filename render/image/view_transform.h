@@ -11,6 +11,9 @@ namespace softreel {
 float srgb_encode(float linear);
 float srgb_decode(float encoded);
 
+/// 255 srgb_encode(linear), rounded: the same byte without the power, some ten times as quick.
+std::uint8_t srgb_byte(float linear);
+
 /// Scene-linear (after exposure) to display-linear in [0, 1]. For Raw the code value itself: no curve comes after it.
 Vec3f apply_view(ViewTransform view, const Vec3f& linear);
 

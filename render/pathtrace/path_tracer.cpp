@@ -35,6 +35,7 @@ void check_meshes(const Scene& scene) {
       if (!time.normals.empty()) CHECK(time.normals.size() == time.positions.size());
       CHECK(time.normals.empty() == mesh.times.front().normals.empty());
     }
+    if (mesh.rest_positions) CHECK(mesh.rest_positions->size() == mesh.times.front().positions.size());
     for (const std::size_t count : {mesh.next_positions.size(), mesh.strain.size()})
       if (count > 0) CHECK(count == mesh.times.front().positions.size());
   }
@@ -196,6 +197,13 @@ class Passes {
   std::vector<std::uint8_t> wanted_;
 };
 
+/// Least number where pixels differ in it.
+double expected_paths(const RenderParams& params) {
+  const PixelWindow window = window_of(params);
+  const int samples = params.time_limit > 0 ? 1 : params.noise > 0 ? params.min_samples : params.samples;
+  return static_cast<double>(window.width()) * window.height() * std::min(samples, params.samples);
+}
+
 /// The material twice: as it is, and as it is seen by way of a wide scattering.
 void add_bsdfs(Picture& picture, const Appearance& appearance, float least_roughness) {
   picture.bsdfs.emplace_back(appearance);
@@ -289,7 +297,7 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   picture.rays = parts_->rays.get();
   {
     const ScopedStage stage(parts_->times, "render/build");
-    parts_->threads.run([&] { parts_->rays->build(picture.meshes); });
+    parts_->threads.run([&] { parts_->rays->build(picture.meshes, expected_paths(params)); });
   }
   const ScopedStage stage(parts_->times, "render/trace");
   const ChannelLayout channels(scene, picture, params.all_channels(), params.width, params.height);

@@ -51,7 +51,8 @@ struct RenderParams {
   ChannelSet all_channels() const;
 };
 
-/// Renders frames of one sequence. The trees are built for each frame alone, so that no frame knows of earlier ones.
+/// Renders frames of one sequence. Trees are built for each frame alone or fitted to it from shapes at rest, so that no
+/// frame knows of earlier ones.
 ///
 /// Bits do not depend on the thread count, on earlier frames or on the machine's vector width: samples are keyed by
 /// pixel and by a hash of geometry and camera (design 4.6). Not thread-safe; one frame at a time.

@@ -29,10 +29,12 @@ class RayScene {
  public:
   virtual ~RayScene() = default;
 
-  /// Replaces everything by trees over `meshes`, whose positions are copied. The trees depend on the meshes only: not
-  /// on earlier frames, nor on the number of threads, which are those of the caller's arena (Threads::run).
-  /// Throws work_error where memory is short.
-  virtual void build(const std::vector<const MotionMesh*>& meshes) = 0;
+  /// Replaces everything by trees over `meshes`, whose positions are copied. Where no mesh moves while the shutter is
+  /// open and one knows its rest_positions, trees of the shapes at rest are made once, kept, and fitted to the
+  /// positions; a frame they would fit badly (tree_fit.h), and every other one, gets trees of its own. The trees depend
+  /// on the meshes only: not on earlier frames, nor on the number of threads, which are those of the caller's arena
+  /// (Threads::run). Throws work_error where memory is short.
+  virtual void build(const std::vector<const MotionMesh*>& meshes, double paths) = 0;
 
   /// coherent: neighbouring calls have similar rays (a hint for speed only).
   virtual bool intersect(const Ray& ray, RayHit& hit, bool coherent) const = 0;

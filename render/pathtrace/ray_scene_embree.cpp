@@ -1,5 +1,7 @@
 /// The only place that knows Embree.
+#include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string>
 
 #include <embree3/rtcore.h>
@@ -8,6 +10,7 @@
 #include "core/base/check.h"
 #include "core/base/error.h"
 #include "render/pathtrace/ray_scene.h"
+#include "render/pathtrace/tree_fit.h"
 
 namespace softreel {
 namespace {
@@ -67,6 +70,155 @@ RTCRay embree_ray(const Ray& ray) {
   return out;
 }
 
+/// Meshes one after another, as one: of it Embree refits a tree. Of several geometries it would build the top of the
+/// tree in the order in which its threads come to them, so that equal distances might be told apart differently.
+struct JoinedMesh {
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+  std::vector<Index> first_triangles;  ///< per mesh
+};
+
+/// The shape that trees are made of: at rest, where the mesh knows it.
+const std::vector<Vec3f>& tree_positions(const MotionMesh& mesh) {
+  return mesh.rest_positions ? *mesh.rest_positions : mesh.times.front().positions;
+}
+
+JoinedMesh joined_at_rest(const std::vector<const MotionMesh*>& meshes) {
+  JoinedMesh joined;
+  for (const MotionMesh* mesh : meshes) {
+    const std::vector<Vec3f>& positions = tree_positions(*mesh);
+    const auto first = static_cast<Index>(joined.positions.size());
+    joined.first_triangles.push_back(static_cast<Index>(joined.triangles.size()));
+    joined.positions.insert(joined.positions.end(), positions.begin(), positions.end());
+    for (const Triangle& t : mesh->triangles) joined.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return joined;
+}
+
+/// Whether trees of the shapes at rest can stand for these meshes. Embree 3 refits no tree of geometry that moves while
+/// the shutter is open: it builds it anew whatever is asked for.
+bool can_fit(const std::vector<const MotionMesh*>& meshes) {
+  const auto is_still = [](const MotionMesh* mesh) { return mesh->times.size() == 1; };
+  const auto knows_rest = [](const MotionMesh* mesh) { return mesh->rest_positions != nullptr; };
+  return std::all_of(meshes.begin(), meshes.end(), is_still) && std::any_of(meshes.begin(), meshes.end(), knows_rest);
+}
+
+/// One tree that is built from a shape and fitted to others of the same triangles.
+class FittedTree {
+ public:
+  FittedTree(RTCDevice device, const JoinedMesh& mesh)
+      : device_(device), scene_(rtcNewScene(device)), geometry_(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE)) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);  // the one that lets a geometry choose
+    rtcSetGeometryBuildQuality(geometry_, RTC_BUILD_QUALITY_REFIT);
+    copy_positions(geometry_, 0, mesh.positions);
+    copy_triangles(geometry_, mesh.triangles);
+    rtcCommitGeometry(geometry_);
+    rtcAttachGeometryByID(scene_, geometry_, 0);
+    require_no_error(device_, "copying a mesh");
+    rtcCommitScene(scene_);
+    require_no_error(device_, "building a tree of the shape at rest");
+  }
+  ~FittedTree() {
+    rtcReleaseGeometry(geometry_);
+    rtcReleaseScene(scene_);
+  }
+  FittedTree(const FittedTree&) = delete;
+  FittedTree& operator=(const FittedTree&) = delete;
+
+  RTCScene scene() const { return scene_; }
+
+  /// To the meshes' positions, one mesh after another.
+  void fit(const std::vector<const MotionMesh*>& meshes) {
+    auto* to = static_cast<Vec3f*>(rtcGetGeometryBufferData(geometry_, RTC_BUFFER_TYPE_VERTEX, 0));
+    for (const MotionMesh* mesh : meshes) {
+      const std::vector<Vec3f>& positions = mesh->times.front().positions;
+      to = std::copy(positions.begin(), positions.end(), to);
+    }
+    rtcUpdateGeometryBuffer(geometry_, RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcCommitGeometry(geometry_);
+    rtcCommitScene(scene_);
+    require_no_error(device_, "fitting a tree");
+  }
+
+ private:
+  RTCDevice device_;
+  RTCScene scene_;
+  RTCGeometry geometry_;
+};
+
+/// Trees of the shapes at rest, for all frames that fit them.
+class RestTrees {
+ public:
+  RestTrees(RTCDevice device, const std::vector<const MotionMesh*>& meshes)
+      : RestTrees(device, meshes, joined_at_rest(meshes)) {}
+
+  /// Whether trees made of these meshes would be the same.
+  bool are_of(const std::vector<const MotionMesh*>& meshes) const {
+    return std::equal(meshes.begin(), meshes.end(), sources_.begin(), sources_.end(),
+                      [](const MotionMesh* mesh, const Source& source) { return source.is(*mesh); });
+  }
+  bool suit(const std::vector<const MotionMesh*>& meshes, double paths) {
+    moved_.clear();
+    for (const MotionMesh* mesh : meshes)
+      if (mesh->rest_positions)
+        moved_.insert(moved_.end(), mesh->times.front().positions.begin(), mesh->times.front().positions.end());
+    return is_worth_fitting(fit_->looseness(moved_), triangles_, paths);
+  }
+  void fit(const std::vector<const MotionMesh*>& meshes) {
+    all_.fit(meshes);
+    for (std::size_t m = 0; m < meshes.size(); ++m)
+      if (bodies_[m]) bodies_[m]->fit({meshes[m]});
+  }
+
+  RTCScene scene() const { return all_.scene(); }
+  /// Of a mesh alone; null where light does not scatter inside.
+  RTCScene body(std::size_t mesh) const { return bodies_[mesh] ? bodies_[mesh]->scene() : nullptr; }
+  /// What the ray met, from its place in all meshes.
+  void find_triangle(unsigned joined_triangle, RayHit& hit) const {
+    const auto triangle = static_cast<Index>(joined_triangle);
+    std::size_t mesh = 0;
+    while (mesh + 1 < first_triangles_.size() && triangle >= first_triangles_[mesh + 1]) ++mesh;
+    hit.mesh = static_cast<Index>(mesh);
+    hit.triangle = triangle - first_triangles_[mesh];
+  }
+
+ private:
+  struct Source {
+    std::shared_ptr<const std::vector<Vec3f>> rest;  ///< held, so that its address is nobody else's
+    std::vector<Vec3f> positions;                    ///< of a mesh that knows no rest
+    std::vector<Triangle> triangles;
+    bool scatters = false;
+
+    bool is(const MotionMesh& mesh) const {
+      return mesh.rest_positions == rest && (rest || mesh.times.front().positions == positions) &&
+             mesh.triangles == triangles && (mesh.appearance.subsurface > 0) == scatters;
+    }
+  };
+
+  RestTrees(RTCDevice device, const std::vector<const MotionMesh*>& meshes, JoinedMesh&& joined)
+      : first_triangles_(std::move(joined.first_triangles)), triangles_(joined.triangles.size()), all_(device, joined) {
+    std::vector<const MotionMesh*> deformable;
+    for (const MotionMesh* mesh : meshes) {
+      const bool scatters = mesh->appearance.subsurface > 0;
+      bodies_.push_back(scatters ? std::make_unique<FittedTree>(device, joined_at_rest({mesh})) : nullptr);
+      sources_.push_back({mesh->rest_positions, mesh->rest_positions ? std::vector<Vec3f>{} : tree_positions(*mesh),
+                          mesh->triangles, scatters});
+      if (mesh->rest_positions) deformable.push_back(mesh);
+    }
+    const JoinedMesh at_rest = joined_at_rest(deformable);
+    fit_.emplace(at_rest.positions, at_rest.triangles);
+  }
+
+  std::vector<Index> first_triangles_;  ///< per mesh
+  std::size_t triangles_;
+  FittedTree all_;
+  std::vector<std::unique_ptr<FittedTree>> bodies_;  ///< per mesh, of it alone
+  std::vector<Source> sources_;
+  std::optional<TreeFit> fit_;  ///< of what knows its rest
+  std::vector<Vec3f> moved_;    ///< its positions, kept for their memory
+};
+
 class EmbreeScene : public RayScene {
  public:
   explicit EmbreeScene(int threads) : device_(rtcNewDevice(device_config(threads).c_str())) {
@@ -75,24 +227,29 @@ class EmbreeScene : public RayScene {
   }
   ~EmbreeScene() override {
     release_scenes();
+    rest_trees_.reset();
     rtcReleaseDevice(device_);
   }
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  void build(const std::vector<const MotionMesh*>& meshes) override;
+  void build(const std::vector<const MotionMesh*>& meshes, double paths) override;
   bool intersect(const Ray& ray, RayHit& hit, bool coherent) const override;
   bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const override;
   bool occluded(const Ray& ray, bool coherent) const override;
 
  private:
+  bool fit_rest_trees(const std::vector<const MotionMesh*>& meshes, double paths);
+  void build_own_trees(const std::vector<const MotionMesh*>& meshes);
   void attach(const MotionMesh& mesh, unsigned id);
   RTCScene new_scene() const;
   void release_scenes();
 
   RTCDevice device_;
-  RTCScene scene_ = nullptr;
-  std::vector<RTCScene> bodies_;  ///< per mesh, of it alone; null where light does not scatter inside
+  std::unique_ptr<RestTrees> rest_trees_;
+  const RestTrees* fitted_ = nullptr;  ///< rest_trees_, if rays are shot at them; null: at scene_
+  RTCScene scene_ = nullptr;           ///< with a reference of its own, as those of bodies_
+  std::vector<RTCScene> bodies_;       ///< per mesh, of it alone; null where light does not scatter inside
 };
 
 RTCScene EmbreeScene::new_scene() const {
@@ -107,6 +264,7 @@ void EmbreeScene::release_scenes() {
   bodies_.clear();
   if (scene_ != nullptr) rtcReleaseScene(scene_);
   scene_ = nullptr;
+  fitted_ = nullptr;
 }
 
 void EmbreeScene::attach(const MotionMesh& mesh, unsigned id) {
@@ -125,8 +283,30 @@ void EmbreeScene::attach(const MotionMesh& mesh, unsigned id) {
   rtcReleaseGeometry(geometry);
 }
 
-void EmbreeScene::build(const std::vector<const MotionMesh*>& meshes) {
+void EmbreeScene::build(const std::vector<const MotionMesh*>& meshes, double paths) {
   release_scenes();
+  if (!can_fit(meshes) || !fit_rest_trees(meshes, paths)) build_own_trees(meshes);
+}
+
+/// False if the frame is too far from rest.
+bool EmbreeScene::fit_rest_trees(const std::vector<const MotionMesh*>& meshes, double paths) {
+  if (!rest_trees_ || !rest_trees_->are_of(meshes)) {
+    rest_trees_.reset();
+    rest_trees_ = std::make_unique<RestTrees>(device_, meshes);
+  }
+  if (!rest_trees_->suit(meshes, paths)) return false;
+  rest_trees_->fit(meshes);
+  fitted_ = rest_trees_.get();
+  const auto hold = [](RTCScene scene) {
+    if (scene != nullptr) rtcRetainScene(scene);
+    return scene;
+  };
+  scene_ = hold(fitted_->scene());
+  for (std::size_t m = 0; m < meshes.size(); ++m) bodies_.push_back(hold(fitted_->body(m)));
+  return true;
+}
+
+void EmbreeScene::build_own_trees(const std::vector<const MotionMesh*>& meshes) {
   scene_ = new_scene();
   bodies_.assign(meshes.size(), nullptr);
   for (std::size_t m = 0; m < meshes.size(); ++m) attach(*meshes[m], static_cast<unsigned>(m));
@@ -147,8 +327,12 @@ bool EmbreeScene::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
   hit.distance = query.ray.tfar;
   hit.u = query.hit.u;
   hit.v = query.hit.v;
-  hit.mesh = static_cast<Index>(query.hit.geomID);
-  hit.triangle = static_cast<Index>(query.hit.primID);
+  if (fitted_ != nullptr) {
+    fitted_->find_triangle(query.hit.primID, hit);
+  } else {
+    hit.mesh = static_cast<Index>(query.hit.geomID);
+    hit.triangle = static_cast<Index>(query.hit.primID);
+  }
   return true;
 }
 

@@ -36,6 +36,9 @@ struct MotionMesh {
     std::vector<Vec3f> normals;  ///< unit, per vertex
   };
   std::vector<Time> times;  ///< 1: no motion blur
+  /// m, per vertex, the shape at rest: what trees that rays are shot at are built from, to be fitted to the times.
+  /// Meshes of one body share it over the frames. Null: the mesh knows none.
+  std::shared_ptr<const std::vector<Vec3f>> rest_positions;
   Appearance appearance;
   std::string material;               ///< its name, for the channel of material ids
   std::vector<Vec3f> next_positions;  ///< at the next frame, for the channel of motion; empty: it stands still

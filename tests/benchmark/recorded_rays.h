@@ -14,7 +14,7 @@ class RecordingScene : public RayScene {
  public:
   explicit RecordingScene(std::unique_ptr<RayScene> rays) : rays_(std::move(rays)) {}
 
-  void build(const std::vector<const MotionMesh*>& meshes) override { rays_->build(meshes); }
+  void build(const std::vector<const MotionMesh*>& meshes, double paths) override { rays_->build(meshes, paths); }
   bool intersect(const Ray& ray, RayHit& hit, bool coherent) const override;
   /// Of walks inside bodies, which the standard picture has not: passed on, not recorded.
   bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const override {

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include "core/mesh/mesh_check.h"
-#include "core/mesh/mesh_repair.h"
-#include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/boundary_surface.h"
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
@@ -28,24 +26,12 @@ PlacementParams placement_params(const BodySettings& body) {
   return params;
 }
 
-StageKey mesh_key(const SurfaceMesh& mesh) {
-  KeyHasher key("mesh 1");
-  key.add(mesh.positions).add(mesh.triangles);
-  for (const Vec2& at : mesh.texture_coordinates) key.add(at.x()).add(at.y());
-  const PolygonList& polygons = mesh.polygons;
-  key.add(polygons.offsets).add(polygons.corner_vertices).add(polygons.corner_textures).add(polygons.polygon_groups);
-  for (const VertexGroup& group : mesh.groups) key.add(group.name).add(group.vertices);
-  return key.key();
-}
-
-/// Reads the surface, and tells what was found and repaired.
-void read_surface(const BodySettings& body, const RunContext& context, LoadedBody& loaded) {
-  loaded.file_mesh = import_mesh(body.mesh, context.log);
-  loaded.facts = describe(check_mesh(loaded.file_mesh));
-  for (std::string& line : repair_mesh(loaded.file_mesh)) loaded.facts.push_back(std::move(line));
-  if (loaded.file_mesh.triangles.empty())
-    throw input_error(
-        fmt::format("{}: no usable triangle is left.\n  Accepted: a surface that encloses a volume.", body.mesh));
+void use_surface(const BodySettings& body, SurfaceUse use, const RunContext& context, LoadedBody& loaded) {
+  ReadSurface read = read_surface(body.mesh, use, context);
+  loaded.file_mesh = std::move(read.mesh);
+  loaded.facts = std::move(read.facts);
+  loaded.file_key = std::move(read.key);
+  loaded.stored_key = std::move(read.stored);
 }
 
 /// Tetrahedra in the mesh field are the body; their boundary is its surface, as sound as they are.
@@ -58,6 +44,7 @@ void read_both(const BodySettings& body, const RunContext& context, LoadedBody& 
   loaded.given = read_tet_mesh(body.mesh, context.log);
   loaded.file_mesh = boundary_surface(*loaded.given);
   loaded.facts = describe(check_mesh(loaded.file_mesh));
+  loaded.file_key = mesh_file_key(loaded.file_mesh);
 }
 
 void add_tet_facts(const TetMesh& mesh, const Threads& threads, std::vector<std::string>& facts) {
@@ -72,19 +59,19 @@ StageKey given_key(const TetMesh& mesh) {
 
 }  // namespace
 
-LoadedBody load_body(const BodySettings& body, const RunContext& context, std::span<const GlueSettings> glues) {
+LoadedBody load_body(const BodySettings& body, const RunContext& context, std::span<const GlueSettings> glues,
+                     SurfaceUse use) {
   const ScopedStage stage(context.times, "load");
   const std::string field = fmt::format("body.{}.mesh", body.name);
   LoadedBody loaded;
   at_field(body.mesh_origin, field, [&] {
-    is_tet_mesh_file(body.mesh) ? read_both(body, context, loaded) : read_surface(body, context, loaded);
+    is_tet_mesh_file(body.mesh) ? read_both(body, context, loaded) : use_surface(body, use, context, loaded);
     loaded.placement = place(loaded.file_mesh, placement_params(body));
   });
   if (!body.tetrahedra.empty())
     loaded.given = at_field(body.origin, fmt::format("body.{}.tetrahedra", body.name),
                             [&] { return read_tet_mesh(body.tetrahedra, context.log); });
   loaded.weight_maps = read_weight_maps(body, glues, loaded.file_mesh);
-  loaded.file_key = mesh_key(loaded.file_mesh);
   loaded.surface = loaded.file_mesh;
   apply(loaded.placement, loaded.surface);
   loaded.key = KeyHasher("surface 1").add(loaded.surface.positions).add(loaded.surface.triangles).key();

@@ -11,6 +11,7 @@
 #include "core/tetmesh/tet_mesh.h"
 #include "tool/shot/shot.h"
 #include "tool/stages/key.h"
+#include "tool/stages/read_surface.h"
 #include "tool/stages/run_context.h"
 
 namespace softreel {
@@ -25,10 +26,12 @@ struct LoadedBody {
   std::vector<std::string> facts;      ///< what check and repair found, one line each
   StageKey key;                        ///< of surface.positions and surface.triangles
   StageKey file_key;                   ///< of all that the mesh file says, before placement
+  StageKey stored_key;                 ///< as of ReadSurface
   StageKey given_key;                  ///< of the given tetrahedra as their file has them; empty if there are none
 };
 
 /// Reads, checks, repairs and places the mesh of a body. Throws input_error.
-LoadedBody load_body(const BodySettings& body, const RunContext& context, std::span<const GlueSettings> glues = {});
+LoadedBody load_body(const BodySettings& body, const RunContext& context, std::span<const GlueSettings> glues = {},
+                     SurfaceUse use = SurfaceUse::LookUp);
 
 }  // namespace softreel

@@ -18,7 +18,7 @@ constexpr const char* kLinear = "half";
 }  // namespace
 
 PictureStage::PictureStage(const SceneStage& scenes, const Shot& shot, Outputs& outputs, const RunContext& context)
-    : scenes_(scenes), shot_(shot), outputs_(outputs), context_(context) {}
+    : scenes_(scenes), shot_(shot), outputs_(outputs), context_(context), encoders_(context.threads.count()) {}
 
 BurnIn frame_words(const ShotSettings& settings, int frame) {
   return {settings.name, fmt::format("{} / {}", frame, settings.last_frame)};
@@ -111,10 +111,11 @@ bool PictureStage::recall(int frame, const StageKey& picture) {
 
 Bytes PictureStage::encode_display(int frame, const Bytes& half) const {
   const ScopedStage stage(context_.times, "write");
-  DisplayImage picture = to_display(decode_half(half), shot_.output.view, static_cast<float>(shot_.output.exposure));
+  DisplayImage picture =
+      to_display(decode_half(half), shot_.output.view, static_cast<float>(shot_.output.exposure), &encoders_);
   scenes_.draw_legend(picture);
   if (shot_.output.burn_in) burn_in(picture, frame_words(shot_.settings, frame));
-  return encode_png(picture);
+  return encode_png(picture, &encoders_);
 }
 
 bool PictureStage::develop(int frame, const StageKey& picture) {

@@ -71,6 +71,7 @@ class PictureStage {
   const Shot& shot_;
   Outputs& outputs_;
   const RunContext& context_;
+  Threads encoders_;                    ///< that nothing stops: a traced picture is written even after Ctrl-C
   std::unique_ptr<PathTracer> tracer_;  ///< made when the first picture has to be traced
 };
 

@@ -180,6 +180,9 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
     environment_image_ = sky_image(SkyModel(*look.day));
     drawn_day_ = look.day;
   }
+  if (rest_positions_.empty())
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      rest_positions_.push_back(std::make_shared<const std::vector<Vec3f>>(to_float(run_.loaded(b).surface.positions)));
   Scene scene;
   scene.camera = look.camera;
   if (shot.render.params.channels.has(PictureChannel::Motion)) scene.next_camera = camera(frame + 1);
@@ -195,6 +198,7 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
     MotionMesh mesh;
     mesh.name = shot.bodies[b].name;
     mesh.triangles = run_.loaded(b).surface.triangles;
+    mesh.rest_positions = rest_positions_[b];
     mesh.appearance = look.appearances[b];
     mesh.material = shot.bodies[b].material;
     mesh.next_positions = to_float(bodies[b].next_positions);
@@ -295,7 +299,7 @@ void SceneStage::add_tracing(KeyHasher& key, const std::vector<Camera>& camera_m
 }
 
 StageKey SceneStage::trace_key(int frame) const {
-  KeyHasher key("trace 3");
+  KeyHasher key("trace 4");
   const Look look = this->look(frame);
   add_look(key, look);
   add_tracing(key, look.camera_motion);
@@ -312,7 +316,7 @@ StageKey SceneStage::preview_key(int frame) const {
 }
 
 StageKey SceneStage::content_key(int frame, const Scene& scene) const {
-  KeyHasher key("picture 3");
+  KeyHasher key("picture 4");
   Look look = this->look(frame);
   look.camera = scene.camera;  // a turntable's is its own
   add_look(key, look);
@@ -324,6 +328,8 @@ StageKey SceneStage::content_key(int frame, const Scene& scene) const {
   } else if (!coloring_key_.empty()) {
     key.add(coloring_key_);
   }
+  // Rays may find the edge between two triangles to be of either in trees of another shape at rest.
+  for (std::size_t b = 0; b < run_.body_count(); ++b) key.add(run_.loaded(b).key);
   for (const MotionMesh& mesh : scene.meshes) {
     key.add(mesh.triangles);
     for (const MotionMesh::Time& time : mesh.times) key.add(time.positions).add(time.normals);

@@ -69,7 +69,8 @@ class SceneStage {
   std::optional<Daylight> drawn_day_;  ///< the sky of environment_image_, where the shot has one
   StageKey environment_checksum_;      ///< of the image file; empty without one
   Bounds rest_bounds_;
-  StageKey coloring_key_;  ///< empty where every body has one look
+  std::vector<std::shared_ptr<const std::vector<Vec3f>>> rest_positions_;  ///< per body
+  StageKey coloring_key_;                                                  ///< empty where every body has one look
 };
 
 /// The camera of a shot at a frame. rest_bounds: of all bodies at rest, for CameraMode::Frame.

@@ -24,7 +24,8 @@ ShotRun::ShotRun(const Shot& shot, const RunContext& context, DialUse dial) : sh
     const BodySettings& settings = shot.bodies[b];
     context.stop_if_cancelled();
     auto body = std::make_unique<Body>();
-    body->loaded = load_body(settings, context, shot.glues);
+    body->loaded =
+        load_body(settings, context, shot.glues, dial == DialUse::Turn ? SurfaceUse::Keep : SurfaceUse::LookUp);
     for (const std::string& fact : body->loaded.facts) context.log.info(settings.name + ": " + fact);
     bodies_.push_back(std::move(body));
   }
@@ -106,6 +107,7 @@ StageKey ShotRun::surfaces_key(int frame, const SkinRequest& request) const {
 std::vector<CacheItem> ShotRun::items(int first, int last) const {
   std::vector<CacheItem> items;
   for (const auto& body : bodies_) {
+    if (!body->loaded.stored_key.empty()) items.push_back(cache_item(kSurfaceStage, body->loaded.stored_key));
     if (shot_.dial.is_on()) items.push_back(cache_item(kDialStage, body->dial_key));
     items.push_back(cache_item(kTetrahedraStage, body->simulation->filled_key()));
     for (int frame = first; frame <= last; ++frame)

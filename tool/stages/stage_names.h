@@ -3,6 +3,7 @@
 
 namespace softreel {
 
+inline constexpr const char* kSurfaceStage = "surface";
 inline constexpr const char* kDialStage = "dial";
 inline constexpr const char* kTetrahedraStage = "tetrahedra";
 inline constexpr const char* kSimulationStage = "simulation";

@@ -1,5 +1,7 @@
 #include "render/image/view_transform.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace softreel {
@@ -11,6 +13,17 @@ TEST(Srgb, DecodesWhatItEncodes) {
     EXPECT_NEAR(srgb_encode(srgb_decode(encoded)), encoded, 1e-5);
   }
   EXPECT_NEAR(srgb_encode(0.5f), 0.735357, 1e-5) << "IEC 61966-2-1";
+}
+
+TEST(Srgb, GivesBytesAsTheCurveDoesToTheLastFloat) {
+  const auto expected = [](float x) { return static_cast<int>(std::lround(255 * srgb_encode(x))); };
+  for (const float x : {-1.0f, 0.0f, 1e-40f, 1.0f, 2.0f, INFINITY, -INFINITY, NAN})
+    EXPECT_EQ(srgb_byte(x), expected(x)) << x;
+  for (float x = 1e-5f; x < 1; x *= 1.0001f) ASSERT_EQ(srgb_byte(x), expected(x)) << x;
+  for (int code = 0; code < 255; ++code) {  // where the byte changes
+    float x = srgb_decode((static_cast<float>(code) + 0.5f) / 255) * (1 - 4e-6f);
+    for (int k = 0; k < 120; ++k, x = std::nextafter(x, 2.0f)) ASSERT_EQ(srgb_byte(x), expected(x)) << x;
+  }
 }
 
 TEST(ApplyView, StandardClipsAndFilmicDoesNot) {

@@ -13,7 +13,7 @@ namespace {
 class Slab : public RayScene {
  public:
   explicit Slab(float depth) : depth_(depth) {}
-  void build(const std::vector<const MotionMesh*>& /*meshes*/) override {}
+  void build(const std::vector<const MotionMesh*>& /*meshes*/, double /*paths*/) override {}
   bool intersect(const Ray& /*ray*/, RayHit& /*hit*/, bool /*coherent*/) const override { return false; }
   bool occluded(const Ray& /*ray*/, bool /*coherent*/) const override { return false; }
   bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const override {

@@ -1,0 +1,52 @@
+#include "render/image/png_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "render/image/image_io.h"
+
+namespace softreel {
+namespace {
+
+DisplayImage noise(int width, int height) {
+  DisplayImage image{width, height, {}};
+  std::mt19937 random(7);
+  for (int k = 0; k < 3 * width * height; ++k) image.pixels.push_back(static_cast<std::uint8_t>(random() % 61));
+  return image;
+}
+
+DisplayImage read_back(const std::vector<std::uint8_t>& bytes) {
+  const std::string path = (std::filesystem::path(testing::TempDir()) / "softreel_strips.png").string();
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return read_png(path);
+}
+
+TEST(PngFile, ReadsBackPicturesOfOneStripOfManyAndOfRowsLongerThanAStrip) {
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(640, 411), std::pair(3, 1000), std::pair(100000, 3)}) {
+    const DisplayImage image = noise(width, height), back = read_back(encode_png(image));
+    EXPECT_EQ(back.width, width);
+    EXPECT_EQ(back.height, height);
+    EXPECT_TRUE(back.pixels == image.pixels) << width << " x " << height;
+  }
+}
+
+TEST(PngFile, HasTheSameBytesWithAnyNumberOfThreads) {
+  const DisplayImage image = noise(640, 411);
+  const std::vector<std::uint8_t> alone = encode_png(image);
+  for (const int count : {1, 4}) {
+    const Threads threads(count);
+    EXPECT_TRUE(encode_png(image, &threads) == alone) << count;
+  }
+}
+
+TEST(PngFile, IsSmallWhereThePictureIsPlain) {
+  const DisplayImage plain{640, 400, std::vector<std::uint8_t>(640 * 400 * 3, 77)};
+  EXPECT_LT(encode_png(plain).size(), plain.pixels.size() / 100);
+}
+
+}  // namespace
+}  // namespace softreel
