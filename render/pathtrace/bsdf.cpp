@@ -62,7 +62,11 @@ Bsdf::Bsdf(const Appearance& appearance, const AlbedoTables& tables)
   const Vec2f mean = ggx_albedo_.mean();
   if (coated || top_) diffuse_scale_ = 1 / (mean_passed() - (dielectric_f0_ * mean.x() + (coated ? mean.y() : 0.0f)));
   if (metal > 0) prepare_metal(appearance);
-  has_cosine_lobe_ = diffuse_from_behind_.maxCoeff() > 0 || metal_return_.maxCoeff() > 0;
+  most_diffuse_ = diffuse_.maxCoeff();
+  most_diffuse_from_behind_ = diffuse_from_behind_.maxCoeff();
+  most_returned_ = metal_return_.maxCoeff();
+  mean_lost_ = mean_passed() - mean.sum();
+  has_cosine_lobe_ = most_diffuse_from_behind_ > 0 || most_returned_ > 0;
 }
 
 /// Kulla and Conty: light that leaves after several reflections, coloured once more by each.
@@ -80,24 +84,20 @@ float Bsdf::diffuse_passed(float cosine, const Vec2f& e) const {
   return passed(cosine) - (dielectric_f0_ * e.x() + (dielectric_f0_ > 0 ? e.y() : 0.0f));
 }
 
-BsdfView Bsdf::seen_from(const Vec3f& o, bool inside) const {
-  BsdfView view;
-  view.o = o;
-  view.inside = inside;
-  if (lambertian_) return view;
-  view.passed = passed(o.z());
-  view.e = ggx_albedo_.at(o.z());
-  view.diffuse_passed = diffuse_passed(o.z(), view.e);
+void Bsdf::look_from(BsdfView& view) const {
+  const float cosine = view.o.z();
+  view.passed = passed(cosine);
+  view.e = ggx_albedo_.at(cosine);
+  view.diffuse_passed = diffuse_passed(cosine, view.e);
+  view.lambda = ggx_lambda(cosine, alpha_);
   view.shares = shares(view);
-  return view;
 }
 
 LobeShares Bsdf::shares(const BsdfView& view) const {
   const float cosine = view.o.z();
   const float reflected = (f0_ * view.e.x() + f90_ * view.e.y()).maxCoeff();
-  const float under = diffuse(view.inside).maxCoeff() * view.diffuse_passed;
-  const float returned =
-      metal_return_.maxCoeff() * (view.passed - (view.e.x() + view.e.y())) * (mean_passed() - ggx_albedo_.mean().sum());
+  const float under = (view.inside ? most_diffuse_from_behind_ : most_diffuse_) * view.diffuse_passed;
+  const float returned = most_returned_ * (view.passed - (view.e.x() + view.e.y())) * mean_lost_;
   LobeShares p;
   p.reflection = reflected;
   p.cosine = has_cosine_lobe_ ? under + std::max(0.0f, returned) : 0.0f;
@@ -109,8 +109,8 @@ LobeShares Bsdf::shares(const BsdfView& view) const {
   }
   const float total = p.reflection + p.cosine + p.glass + (p.subsurface + p.sheen + p.coat);
   if (!(total > 0)) return {};
-  for (float* share : {&p.sheen, &p.coat, &p.reflection, &p.cosine, &p.subsurface, &p.glass}) *share /= total;
-  return p;
+  return {p.sheen / total,  p.coat / total,       p.reflection / total,
+          p.cosine / total, p.subsurface / total, p.glass / total};
 }
 
 Vec3f Bsdf::cosine_lobe(const BsdfView& view, float cos_i) const {
@@ -126,11 +126,11 @@ void Bsdf::add_reflection(const BsdfView& view, const Vec3f& i, BsdfValue& sum) 
   const Vec3f h = (o + i).normalized();
   const float cos_d = o.dot(h);
   const float distribution = ggx_distribution(h.z(), alpha_);
-  const float lambda_o = ggx_lambda(o.z(), alpha_), lambda_i = ggx_lambda(i.z(), alpha_);
+  const float lambda_i = ggx_lambda(i.z(), alpha_);
   const float common = distribution / (4 * o.z());
   const float seen = top_ ? std::min(view.passed, passed(i.z())) : 1.0f;
-  sum.value += reflectance(cos_d) * (seen * common / (1 + lambda_o + lambda_i));
-  sum.pdf += view.shares.reflection * common / (1 + lambda_o);
+  sum.value += reflectance(cos_d) * (seen * common / (1 + view.lambda + lambda_i));
+  sum.pdf += view.shares.reflection * common / (1 + view.lambda);
 }
 
 void Bsdf::add_glass(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const {
@@ -174,12 +174,8 @@ void Bsdf::add_base(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const 
   if (glass_ > 0 && !mirror_ && i.z() != 0) add_glass(view, i, sum);
 }
 
-BsdfValue Bsdf::evaluate(const BsdfView& view, const Vec3f& i) const {
+BsdfValue Bsdf::evaluate_lobes(const BsdfView& view, const Vec3f& i) const {
   BsdfValue sum;
-  if (lambertian_) {
-    if (i.z() <= 0) return sum;
-    return {diffuse_ * (i.z() / kPi), i.z() / kPi};
-  }
   add_base(view, i, sum);
   if (!top_) return sum;
   sum.value = sum.value.cwiseProduct(top_->tint(view.o.z()));
@@ -284,7 +280,7 @@ bool Bsdf::sample(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& 
   const float layers = p.sheen + p.subsurface + p.coat;
   const Drawn drawn = lobe < layers ? draw_layer(view, lobe, u, sample) : draw_base(view, lobe - layers, u, sample);
   if (drawn != Drawn::Direction) return drawn == Drawn::Whole;
-  const BsdfValue value = evaluate(view, sample.direction);
+  const BsdfValue value = evaluate_lobes(view, sample.direction);
   if (!(value.pdf > 0)) return false;
   sample.pdf = value.pdf;
   sample.weight = value.value / value.pdf;

@@ -43,6 +43,18 @@ const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, SurfacePoint& point, cons
   return bsdfs[mesh];
 }
 
+void PathIntegrator::record_first_hit(const RayHit& hit, const SurfacePoint& point, const Bsdf& bsdf) {
+  first_hit_.albedo = bsdf.albedo();
+  first_hit_.normal = point.shading_normal;
+  first_hit_.distance = hit.distance;
+  first_hit_.position = point.position;
+  first_hit_.mesh = hit.mesh;
+  first_hit_.triangle = hit.triangle;
+  first_hit_.u = hit.u;
+  first_hit_.v = hit.v;
+  first_hit_.coverage = 1;
+}
+
 void PathIntegrator::add(const Vec3f& radiance) {
   Vec3f part = throughput_.cwiseProduct(radiance);
   // After the first scattering the light is direct; only what comes by way of another surface is clamped.
@@ -92,7 +104,7 @@ void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, cons
   if (value.value.maxCoeff() <= 0) return;
   const bool weighed = !point_like && picture_.direct_light == DirectLight::Weighed;
   const float weight = weighed ? power_heuristic(light.pdf, value.pdf) : 1.0f;
-  const bool through = light.direction.dot(point.shading_normal) < 0;
+  const bool through = towards.z() < 0;
   Ray shadow;
   shadow.origin = through ? point.lowered : point.lifted;
   shadow.direction = light.direction;
@@ -178,16 +190,7 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     }
     SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
     const Bsdf& bsdf = bsdf_at(hit, point, ray);
-    if (bounces_ == 0)
-      first_hit_ = {.albedo = bsdf.albedo(),
-                    .normal = point.shading_normal,
-                    .distance = hit.distance,
-                    .position = point.position,
-                    .mesh = hit.mesh,
-                    .triangle = hit.triangle,
-                    .u = hit.u,
-                    .v = hit.v,
-                    .coverage = 1};
+    if (bounces_ == 0) record_first_hit(hit, point, bsdf);
     if (point.inside && bsdf.transmits())
       throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());
     if (!point.inside && bsdf.emission().maxCoeff() > 0)
@@ -201,7 +204,7 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, time_};
     if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, view, numbers);
     if (!scatter(bsdf, point, frame, view, numbers, ray)) break;
-    cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
+    if (picture_.has_textures) cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
   }
   return radiance_;
 }
