@@ -11,6 +11,26 @@ float shadowing_weight(const Vec3f& o, float cos_i, float alpha) {
   return ggx_shadowing(o.z(), std::abs(cos_i), alpha) / ggx_masking(o.z(), alpha);
 }
 
+/// The second of two numbers falls into the share of one lobe, and its place within it is a number again. So the points
+/// of each lobe are as evenly spread as all are, where a number of its own would leave out some of them by chance.
+class LobeChoice {
+ public:
+  explicit LobeChoice(const Vec2f& u) : u_(u) {}
+  /// Asked once a lobe, in turn, until it does.
+  bool falls_into(float share) {
+    if (u_.y() >= share) {
+      u_.y() -= share;
+      return false;
+    }
+    u_.y() = std::min(u_.y() / share, 0x1.fffffep-1f);
+    return true;
+  }
+  const Vec2f& point() const { return u_; }
+
+ private:
+  Vec2f u_;
+};
+
 }  // namespace
 
 AlbedoTables AlbedoTables::of(const Appearance& appearance) {
@@ -66,6 +86,8 @@ Bsdf::Bsdf(const Appearance& appearance, const AlbedoTables& tables)
   most_diffuse_from_behind_ = diffuse_from_behind_.maxCoeff();
   most_returned_ = metal_return_.maxCoeff();
   mean_lost_ = mean_passed() - mean.sum();
+  const bool coat_shines = top_ && top_->has_coat() && !top_->mirror_coat() && !top_->wide_coat();
+  has_highlight_ = coat_shines || (!mirror_ && alpha_ < kWideAlpha && f90_.maxCoeff() > 0);
   has_cosine_lobe_ = most_diffuse_from_behind_ > 0 || most_returned_ > 0;
 }
 
@@ -224,50 +246,51 @@ Bsdf::Drawn Bsdf::draw_reflection(const BsdfView& view, const Vec2f& u, BsdfSamp
   return sample.direction.z() > 0 ? Drawn::Direction : Drawn::Nothing;
 }
 
-Bsdf::Drawn Bsdf::draw_layer(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const {
+Bsdf::Drawn Bsdf::draw_subsurface(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const {
+  // Enters as it would leave: evenly over the projected hemisphere.
+  sample.direction = -cosine_hemisphere(u);
+  sample.weight = Vec3f::Constant(subsurface_ * view.diffuse_passed / view.shares.subsurface);
+  if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(view.o.z()));
+  sample.subsurface = true;
+  sample.pdf = 0;
+  return Drawn::Whole;
+}
+
+Bsdf::Drawn Bsdf::draw_coat(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const {
   const Vec3f& o = view.o;
-  const LobeShares& p = view.shares;
-  sample.wide = true;
-  if (lobe < p.sheen) {
-    sample.direction = TopLayers::sample_sheen(u);
-    return sample.direction.z() > 0 ? Drawn::Direction : Drawn::Nothing;
-  }
-  if (lobe < p.sheen + p.subsurface) {
-    // Enters as it would leave: evenly over the projected hemisphere.
-    sample.direction = -cosine_hemisphere(u);
-    sample.weight = Vec3f::Constant(subsurface_ * view.diffuse_passed / p.subsurface);
-    if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(o.z()));
-    sample.subsurface = true;
-    sample.pdf = 0;
-    return Drawn::Whole;
-  }
   sample.wide = top_->wide_coat();
   if (!top_->mirror_coat()) return top_->sample_coat(o, u, sample.direction) ? Drawn::Direction : Drawn::Nothing;
   sample.direction = Vec3f(-o.x(), -o.y(), o.z());
-  sample.weight = Vec3f::Constant(top_->coat_share(o.z()) / p.coat);
+  sample.weight = Vec3f::Constant(top_->coat_share(o.z()) / view.shares.coat);
   sample.mirror = true;
   sample.pdf = 0;
   return Drawn::Whole;
 }
 
-Bsdf::Drawn Bsdf::draw_base(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const {
+Bsdf::Drawn Bsdf::draw(const BsdfView& view, float side, const Vec2f& u, BsdfSample& sample) const {
   const LobeShares& p = view.shares;
-  sample.wide = alpha_ >= kWideAlpha;
-  if (lobe < p.cosine) {
-    sample.direction = cosine_hemisphere(u);
-    sample.wide = true;
+  LobeChoice choice(u);
+  sample.wide = true;
+  if (choice.falls_into(p.sheen)) {
+    sample.direction = TopLayers::sample_sheen(choice.point());
+    return sample.direction.z() > 0 ? Drawn::Direction : Drawn::Nothing;
+  }
+  if (choice.falls_into(p.subsurface)) return draw_subsurface(view, choice.point(), sample);
+  if (choice.falls_into(p.coat)) return draw_coat(view, choice.point(), sample);
+  if (choice.falls_into(p.cosine)) {
+    sample.direction = cosine_hemisphere(choice.point());
     return Drawn::Direction;
   }
-  if (lobe < p.cosine + p.reflection) return draw_reflection(view, u, sample);
-  if (!(p.glass > 0)) return Drawn::Nothing;
+  sample.wide = alpha_ >= kWideAlpha;
+  if (choice.falls_into(p.reflection)) return draw_reflection(view, choice.point(), sample);
+  if (!choice.falls_into(p.glass)) return Drawn::Nothing;  // all shares together are 1 up to rounding
   const float eta = view.inside ? 1 / ior_ : ior_;
-  const float side = std::clamp((lobe - p.cosine - p.reflection) / p.glass, 0.0f, 0x1.fffffep-1f);
   if (mirror_) return draw_mirror_glass(view.o, side, eta, p.glass, sample);
-  sample.direction = sample_rough_glass(view.o, side, u, eta);
+  sample.direction = sample_rough_glass(view.o, side, choice.point(), eta);
   return sample.direction.z() != 0 ? Drawn::Direction : Drawn::Nothing;
 }
 
-bool Bsdf::sample(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const {
+bool Bsdf::sample(const BsdfView& view, float side, const Vec2f& u, BsdfSample& sample) const {
   sample.mirror = sample.subsurface = false;
   if (lambertian_) {
     sample.direction = cosine_hemisphere(u);
@@ -276,9 +299,7 @@ bool Bsdf::sample(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& 
     sample.wide = true;
     return sample.pdf > 0;
   }
-  const LobeShares& p = view.shares;
-  const float layers = p.sheen + p.subsurface + p.coat;
-  const Drawn drawn = lobe < layers ? draw_layer(view, lobe, u, sample) : draw_base(view, lobe - layers, u, sample);
+  const Drawn drawn = draw(view, side, u, sample);
   if (drawn != Drawn::Direction) return drawn == Drawn::Whole;
   const BsdfValue value = evaluate_lobes(view, sample.direction);
   if (!(value.pdf > 0)) return false;

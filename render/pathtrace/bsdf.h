@@ -74,16 +74,19 @@ class Bsdf {
   BsdfValue evaluate(const BsdfView& view, const Vec3f& i) const {
     return lambertian_ ? lambert(i.z()) : evaluate_lobes(view, i);
   }
-  /// lobe, u: numbers in [0, 1). False if the sample carries nothing.
-  bool sample(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const;
+  /// Numbers in [0, 1). u: for the lobe and the direction in it; side: for what rough or smooth glass does with it.
+  /// False if the sample carries nothing.
+  bool sample(const BsdfView& view, float side, const Vec2f& u, BsdfSample& sample) const;
 
   BsdfValue evaluate(const Vec3f& o, const Vec3f& i, bool inside) const { return evaluate(seen_from(o, inside), i); }
-  bool sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfSample& out) const {
-    return sample(seen_from(o, inside), lobe, u, out);
+  bool sample(const Vec3f& o, float side, const Vec2f& u, bool inside, BsdfSample& out) const {
+    return sample(seen_from(o, inside), side, u, out);
   }
 
   /// Whether evaluate() can be above 0, so that sampling lights makes sense.
   bool has_smooth_part() const { return has_cosine_lobe_ || !mirror_ || (top_ && top_->has_smooth_part()); }
+  /// Whether a lamp's reflection may be narrower than the lamp: a lobe that is neither a mirror nor wide.
+  bool has_highlight() const { return has_highlight_; }
   bool transmits() const { return glass_ > 0; }
   const Vec3f& absorption() const { return absorption_; }
   const Vec3f& emission() const { return emission_; }
@@ -119,17 +122,17 @@ class Bsdf {
 
   /// What drawing a lobe has settled: nothing is carried, all of the sample, or its direction only.
   enum class Drawn { Nothing, Whole, Direction };
-  /// Of the layers and of the subsurface lobe; lobe: below the sum of their shares.
-  Drawn draw_layer(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const;
-  /// Of the base; lobe: from 0 on for these alone.
-  Drawn draw_base(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const;
+  Drawn draw(const BsdfView& view, float side, const Vec2f& u, BsdfSample& sample) const;
+  Drawn draw_subsurface(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const;
+  Drawn draw_coat(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const;
   Drawn draw_reflection(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const;
   Drawn draw_mirror_glass(const Vec3f& o, float u, float eta, float share, BsdfSample& sample) const;
   Vec3f sample_rough_glass(const Vec3f& o, float u_side, const Vec2f& u, float eta) const;
 
   float alpha_;
-  bool mirror_;           ///< GGX and glass are perfectly smooth
-  bool lambertian_;       ///< only the diffuse lobe, nothing over it
+  bool mirror_;      ///< GGX and glass are perfectly smooth
+  bool lambertian_;  ///< only the diffuse lobe, nothing over it
+  bool has_highlight_;
   bool has_cosine_lobe_;  ///< from one side at least
   float glass_;           ///< weight of the glass lobe
   float ior_;

@@ -75,6 +75,9 @@ class PathIntegrator {
   /// Light sampling at a point. view: of `bsdf` from where the path comes; not asked for while light leaves a body.
   void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
                   const SampleBlock& numbers);
+  /// Of every light, or of one of them. share: of the light that counts.
+  void add_lights(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
+                  float choice, const Vec2f& u, float share);
   void add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
                  const LightSample& light, bool point_like);
   /// Continues the path; false where it ends.
