@@ -101,12 +101,4 @@ AlbedoTable AlbedoTable::between(const AlbedoTable& a, const AlbedoTable& b, flo
   return table;
 }
 
-Vec2f AlbedoTable::at(float cosine) const {
-  const float s = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * kIntervals;
-  const int k = std::min(static_cast<int>(s), kIntervals - 1);
-  const float t = s - static_cast<float>(k);
-  const auto i = static_cast<std::size_t>(k);
-  return (1 - t) * knots_[i] + t * knots_[i + 1];
-}
-
 }  // namespace softreel

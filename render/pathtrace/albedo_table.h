@@ -1,7 +1,9 @@
 /// Directional albedos of surfaces, integrated once and looked up by the cosine of the direction.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 
@@ -24,7 +26,13 @@ class AlbedoTable {
   static AlbedoTable of(const std::function<Vec2f(float)>& albedo_at);
 
   /// At the cosine mu in [0, 1].
-  Vec2f at(float cosine) const;
+  Vec2f at(float cosine) const {
+    const float s = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * kIntervals;
+    const int k = std::min(static_cast<int>(s), kIntervals - 1);
+    const float t = s - static_cast<float>(k);
+    const auto i = static_cast<std::size_t>(k);
+    return (1 - t) * knots_[i] + t * knots_[i + 1];
+  }
   /// Mean, weighted by 2 mu.
   Vec2f mean() const { return mean_; }
   /// share: 0 gives a, bit for bit.

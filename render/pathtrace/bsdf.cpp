@@ -11,6 +11,26 @@ float shadowing_weight(const Vec3f& o, float cos_i, float alpha) {
   return ggx_shadowing(o.z(), std::abs(cos_i), alpha) / ggx_masking(o.z(), alpha);
 }
 
+/// The second of two numbers falls into the share of one lobe, and its place within it is a number again. So the points
+/// of each lobe are as evenly spread as all are, where a number of its own would leave out some of them by chance.
+class LobeChoice {
+ public:
+  explicit LobeChoice(const Vec2f& u) : u_(u) {}
+  /// Asked once a lobe, in turn, until it does.
+  bool falls_into(float share) {
+    if (u_.y() >= share) {
+      u_.y() -= share;
+      return false;
+    }
+    u_.y() = std::min(u_.y() / share, 0x1.fffffep-1f);
+    return true;
+  }
+  const Vec2f& point() const { return u_; }
+
+ private:
+  Vec2f u_;
+};
+
 }  // namespace
 
 AlbedoTables AlbedoTables::of(const Appearance& appearance) {
@@ -62,7 +82,13 @@ Bsdf::Bsdf(const Appearance& appearance, const AlbedoTables& tables)
   const Vec2f mean = ggx_albedo_.mean();
   if (coated || top_) diffuse_scale_ = 1 / (mean_passed() - (dielectric_f0_ * mean.x() + (coated ? mean.y() : 0.0f)));
   if (metal > 0) prepare_metal(appearance);
-  has_cosine_lobe_ = diffuse_from_behind_.maxCoeff() > 0 || metal_return_.maxCoeff() > 0;
+  most_diffuse_ = diffuse_.maxCoeff();
+  most_diffuse_from_behind_ = diffuse_from_behind_.maxCoeff();
+  most_returned_ = metal_return_.maxCoeff();
+  mean_lost_ = mean_passed() - mean.sum();
+  const bool coat_shines = top_ && top_->has_coat() && !top_->mirror_coat() && !top_->wide_coat();
+  has_highlight_ = coat_shines || (!mirror_ && alpha_ < kWideAlpha && f90_.maxCoeff() > 0);
+  has_cosine_lobe_ = most_diffuse_from_behind_ > 0 || most_returned_ > 0;
 }
 
 /// Kulla and Conty: light that leaves after several reflections, coloured once more by each.
@@ -80,24 +106,20 @@ float Bsdf::diffuse_passed(float cosine, const Vec2f& e) const {
   return passed(cosine) - (dielectric_f0_ * e.x() + (dielectric_f0_ > 0 ? e.y() : 0.0f));
 }
 
-BsdfView Bsdf::seen_from(const Vec3f& o, bool inside) const {
-  BsdfView view;
-  view.o = o;
-  view.inside = inside;
-  if (lambertian_) return view;
-  view.passed = passed(o.z());
-  view.e = ggx_albedo_.at(o.z());
-  view.diffuse_passed = diffuse_passed(o.z(), view.e);
+void Bsdf::look_from(BsdfView& view) const {
+  const float cosine = view.o.z();
+  view.passed = passed(cosine);
+  view.e = ggx_albedo_.at(cosine);
+  view.diffuse_passed = diffuse_passed(cosine, view.e);
+  view.lambda = ggx_lambda(cosine, alpha_);
   view.shares = shares(view);
-  return view;
 }
 
 LobeShares Bsdf::shares(const BsdfView& view) const {
   const float cosine = view.o.z();
   const float reflected = (f0_ * view.e.x() + f90_ * view.e.y()).maxCoeff();
-  const float under = diffuse(view.inside).maxCoeff() * view.diffuse_passed;
-  const float returned =
-      metal_return_.maxCoeff() * (view.passed - (view.e.x() + view.e.y())) * (mean_passed() - ggx_albedo_.mean().sum());
+  const float under = (view.inside ? most_diffuse_from_behind_ : most_diffuse_) * view.diffuse_passed;
+  const float returned = most_returned_ * (view.passed - (view.e.x() + view.e.y())) * mean_lost_;
   LobeShares p;
   p.reflection = reflected;
   p.cosine = has_cosine_lobe_ ? under + std::max(0.0f, returned) : 0.0f;
@@ -109,8 +131,8 @@ LobeShares Bsdf::shares(const BsdfView& view) const {
   }
   const float total = p.reflection + p.cosine + p.glass + (p.subsurface + p.sheen + p.coat);
   if (!(total > 0)) return {};
-  for (float* share : {&p.sheen, &p.coat, &p.reflection, &p.cosine, &p.subsurface, &p.glass}) *share /= total;
-  return p;
+  return {p.sheen / total,  p.coat / total,       p.reflection / total,
+          p.cosine / total, p.subsurface / total, p.glass / total};
 }
 
 Vec3f Bsdf::cosine_lobe(const BsdfView& view, float cos_i) const {
@@ -126,11 +148,11 @@ void Bsdf::add_reflection(const BsdfView& view, const Vec3f& i, BsdfValue& sum) 
   const Vec3f h = (o + i).normalized();
   const float cos_d = o.dot(h);
   const float distribution = ggx_distribution(h.z(), alpha_);
-  const float lambda_o = ggx_lambda(o.z(), alpha_), lambda_i = ggx_lambda(i.z(), alpha_);
+  const float lambda_i = ggx_lambda(i.z(), alpha_);
   const float common = distribution / (4 * o.z());
   const float seen = top_ ? std::min(view.passed, passed(i.z())) : 1.0f;
-  sum.value += reflectance(cos_d) * (seen * common / (1 + lambda_o + lambda_i));
-  sum.pdf += view.shares.reflection * common / (1 + lambda_o);
+  sum.value += reflectance(cos_d) * (seen * common / (1 + view.lambda + lambda_i));
+  sum.pdf += view.shares.reflection * common / (1 + view.lambda);
 }
 
 void Bsdf::add_glass(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const {
@@ -174,12 +196,8 @@ void Bsdf::add_base(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const 
   if (glass_ > 0 && !mirror_ && i.z() != 0) add_glass(view, i, sum);
 }
 
-BsdfValue Bsdf::evaluate(const BsdfView& view, const Vec3f& i) const {
+BsdfValue Bsdf::evaluate_lobes(const BsdfView& view, const Vec3f& i) const {
   BsdfValue sum;
-  if (lambertian_) {
-    if (i.z() <= 0) return sum;
-    return {diffuse_ * (i.z() / kPi), i.z() / kPi};
-  }
   add_base(view, i, sum);
   if (!top_) return sum;
   sum.value = sum.value.cwiseProduct(top_->tint(view.o.z()));
@@ -228,50 +246,51 @@ Bsdf::Drawn Bsdf::draw_reflection(const BsdfView& view, const Vec2f& u, BsdfSamp
   return sample.direction.z() > 0 ? Drawn::Direction : Drawn::Nothing;
 }
 
-Bsdf::Drawn Bsdf::draw_layer(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const {
+Bsdf::Drawn Bsdf::draw_subsurface(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const {
+  // Enters as it would leave: evenly over the projected hemisphere.
+  sample.direction = -cosine_hemisphere(u);
+  sample.weight = Vec3f::Constant(subsurface_ * view.diffuse_passed / view.shares.subsurface);
+  if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(view.o.z()));
+  sample.subsurface = true;
+  sample.pdf = 0;
+  return Drawn::Whole;
+}
+
+Bsdf::Drawn Bsdf::draw_coat(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const {
   const Vec3f& o = view.o;
-  const LobeShares& p = view.shares;
-  sample.wide = true;
-  if (lobe < p.sheen) {
-    sample.direction = TopLayers::sample_sheen(u);
-    return sample.direction.z() > 0 ? Drawn::Direction : Drawn::Nothing;
-  }
-  if (lobe < p.sheen + p.subsurface) {
-    // Enters as it would leave: evenly over the projected hemisphere.
-    sample.direction = -cosine_hemisphere(u);
-    sample.weight = Vec3f::Constant(subsurface_ * view.diffuse_passed / p.subsurface);
-    if (top_) sample.weight = sample.weight.cwiseProduct(top_->tint(o.z()));
-    sample.subsurface = true;
-    sample.pdf = 0;
-    return Drawn::Whole;
-  }
   sample.wide = top_->wide_coat();
   if (!top_->mirror_coat()) return top_->sample_coat(o, u, sample.direction) ? Drawn::Direction : Drawn::Nothing;
   sample.direction = Vec3f(-o.x(), -o.y(), o.z());
-  sample.weight = Vec3f::Constant(top_->coat_share(o.z()) / p.coat);
+  sample.weight = Vec3f::Constant(top_->coat_share(o.z()) / view.shares.coat);
   sample.mirror = true;
   sample.pdf = 0;
   return Drawn::Whole;
 }
 
-Bsdf::Drawn Bsdf::draw_base(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const {
+Bsdf::Drawn Bsdf::draw(const BsdfView& view, float side, const Vec2f& u, BsdfSample& sample) const {
   const LobeShares& p = view.shares;
-  sample.wide = alpha_ >= kWideAlpha;
-  if (lobe < p.cosine) {
-    sample.direction = cosine_hemisphere(u);
-    sample.wide = true;
+  LobeChoice choice(u);
+  sample.wide = true;
+  if (choice.falls_into(p.sheen)) {
+    sample.direction = TopLayers::sample_sheen(choice.point());
+    return sample.direction.z() > 0 ? Drawn::Direction : Drawn::Nothing;
+  }
+  if (choice.falls_into(p.subsurface)) return draw_subsurface(view, choice.point(), sample);
+  if (choice.falls_into(p.coat)) return draw_coat(view, choice.point(), sample);
+  if (choice.falls_into(p.cosine)) {
+    sample.direction = cosine_hemisphere(choice.point());
     return Drawn::Direction;
   }
-  if (lobe < p.cosine + p.reflection) return draw_reflection(view, u, sample);
-  if (!(p.glass > 0)) return Drawn::Nothing;
+  sample.wide = alpha_ >= kWideAlpha;
+  if (choice.falls_into(p.reflection)) return draw_reflection(view, choice.point(), sample);
+  if (!choice.falls_into(p.glass)) return Drawn::Nothing;  // all shares together are 1 up to rounding
   const float eta = view.inside ? 1 / ior_ : ior_;
-  const float side = std::clamp((lobe - p.cosine - p.reflection) / p.glass, 0.0f, 0x1.fffffep-1f);
   if (mirror_) return draw_mirror_glass(view.o, side, eta, p.glass, sample);
-  sample.direction = sample_rough_glass(view.o, side, u, eta);
+  sample.direction = sample_rough_glass(view.o, side, choice.point(), eta);
   return sample.direction.z() != 0 ? Drawn::Direction : Drawn::Nothing;
 }
 
-bool Bsdf::sample(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const {
+bool Bsdf::sample(const BsdfView& view, float side, const Vec2f& u, BsdfSample& sample) const {
   sample.mirror = sample.subsurface = false;
   if (lambertian_) {
     sample.direction = cosine_hemisphere(u);
@@ -280,11 +299,9 @@ bool Bsdf::sample(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& 
     sample.wide = true;
     return sample.pdf > 0;
   }
-  const LobeShares& p = view.shares;
-  const float layers = p.sheen + p.subsurface + p.coat;
-  const Drawn drawn = lobe < layers ? draw_layer(view, lobe, u, sample) : draw_base(view, lobe - layers, u, sample);
+  const Drawn drawn = draw(view, side, u, sample);
   if (drawn != Drawn::Direction) return drawn == Drawn::Whole;
-  const BsdfValue value = evaluate(view, sample.direction);
+  const BsdfValue value = evaluate_lobes(view, sample.direction);
   if (!(value.pdf > 0)) return false;
   sample.pdf = value.pdf;
   sample.weight = value.value / value.pdf;

@@ -15,6 +15,7 @@
 
 #include "render/pathtrace/albedo_table.h"
 #include "render/pathtrace/microfacet.h"
+#include "render/pathtrace/sampling.h"
 #include "render/pathtrace/scattering.h"
 #include "render/pathtrace/top_layers.h"
 #include "render/scene/material.h"
@@ -51,6 +52,7 @@ struct BsdfView {
   float passed = 1;          ///< past coat and sheen
   Vec2f e = Vec2f::Zero();   ///< of the reflection's albedo table
   float diffuse_passed = 1;  ///< past all that is above the diffuse lobe
+  float lambda = 0;          ///< ggx_lambda of the base
   LobeShares shares;
 };
 
@@ -62,18 +64,29 @@ class Bsdf {
   /// Quick; tables: those of an appearance that differs in base colour only, or between those of two neighbours.
   Bsdf(const Appearance& appearance, const AlbedoTables& tables);
 
-  BsdfView seen_from(const Vec3f& o, bool inside) const;
-  BsdfValue evaluate(const BsdfView& view, const Vec3f& i) const;
-  /// lobe, u: numbers in [0, 1). False if the sample carries nothing.
-  bool sample(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const;
+  BsdfView seen_from(const Vec3f& o, bool inside) const {
+    BsdfView view;
+    view.o = o;
+    view.inside = inside;
+    if (!lambertian_) look_from(view);
+    return view;
+  }
+  BsdfValue evaluate(const BsdfView& view, const Vec3f& i) const {
+    return lambertian_ ? lambert(i.z()) : evaluate_lobes(view, i);
+  }
+  /// Numbers in [0, 1). u: for the lobe and the direction in it; side: for what rough or smooth glass does with it.
+  /// False if the sample carries nothing.
+  bool sample(const BsdfView& view, float side, const Vec2f& u, BsdfSample& sample) const;
 
   BsdfValue evaluate(const Vec3f& o, const Vec3f& i, bool inside) const { return evaluate(seen_from(o, inside), i); }
-  bool sample(const Vec3f& o, float lobe, const Vec2f& u, bool inside, BsdfSample& out) const {
-    return sample(seen_from(o, inside), lobe, u, out);
+  bool sample(const Vec3f& o, float side, const Vec2f& u, bool inside, BsdfSample& out) const {
+    return sample(seen_from(o, inside), side, u, out);
   }
 
   /// Whether evaluate() can be above 0, so that sampling lights makes sense.
   bool has_smooth_part() const { return has_cosine_lobe_ || !mirror_ || (top_ && top_->has_smooth_part()); }
+  /// Whether a lamp's reflection may be narrower than the lamp: a lobe that is neither a mirror nor wide.
+  bool has_highlight() const { return has_highlight_; }
   bool transmits() const { return glass_ > 0; }
   const Vec3f& absorption() const { return absorption_; }
   const Vec3f& emission() const { return emission_; }
@@ -86,6 +99,13 @@ class Bsdf {
   BsdfValue evaluate_leaving(const Vec3f& i) const;
 
  private:
+  /// The rest of a view, if there is more than the diffuse lobe.
+  void look_from(BsdfView& view) const;
+  BsdfValue lambert(float cos_i) const {
+    if (cos_i <= 0) return {};
+    return {diffuse_ * (cos_i / kPi), cos_i / kPi};
+  }
+  BsdfValue evaluate_lobes(const BsdfView& view, const Vec3f& i) const;
   LobeShares shares(const BsdfView& view) const;
   void prepare_metal(const Appearance& appearance);
   Vec3f reflectance(float cosine) const { return f0_ + (f90_ - f0_) * schlick_weight(cosine); }
@@ -102,27 +122,30 @@ class Bsdf {
 
   /// What drawing a lobe has settled: nothing is carried, all of the sample, or its direction only.
   enum class Drawn { Nothing, Whole, Direction };
-  /// Of the layers and of the subsurface lobe; lobe: below the sum of their shares.
-  Drawn draw_layer(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const;
-  /// Of the base; lobe: from 0 on for these alone.
-  Drawn draw_base(const BsdfView& view, float lobe, const Vec2f& u, BsdfSample& sample) const;
+  Drawn draw(const BsdfView& view, float side, const Vec2f& u, BsdfSample& sample) const;
+  Drawn draw_subsurface(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const;
+  Drawn draw_coat(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const;
   Drawn draw_reflection(const BsdfView& view, const Vec2f& u, BsdfSample& sample) const;
   Drawn draw_mirror_glass(const Vec3f& o, float u, float eta, float share, BsdfSample& sample) const;
   Vec3f sample_rough_glass(const Vec3f& o, float u_side, const Vec2f& u, float eta) const;
 
   float alpha_;
-  bool mirror_;           ///< GGX and glass are perfectly smooth
-  bool lambertian_;       ///< only the diffuse lobe, nothing over it
+  bool mirror_;      ///< GGX and glass are perfectly smooth
+  bool lambertian_;  ///< only the diffuse lobe, nothing over it
+  bool has_highlight_;
   bool has_cosine_lobe_;  ///< from one side at least
   float glass_;           ///< weight of the glass lobe
   float ior_;
   float dielectric_f0_;
-  Vec3f f0_, f90_;                      ///< reflectances of dielectric and metal, with their weights
-  Vec3f diffuse_;                       ///< albedo under the dielectric, with weight
-  Vec3f diffuse_from_behind_;           ///< the same and the subsurface lobe's
-  float diffuse_scale_ = 1;             ///< 1 / (mean of diffuse_passed)
-  float subsurface_ = 0;                ///< weight of the subsurface lobe
-  Vec3f metal_return_ = Vec3f::Zero();  ///< of multiple scattering among facets, with weight
+  Vec3f f0_, f90_;                                 ///< reflectances of dielectric and metal, with their weights
+  Vec3f diffuse_;                                  ///< albedo under the dielectric, with weight
+  Vec3f diffuse_from_behind_;                      ///< the same and the subsurface lobe's
+  float diffuse_scale_ = 1;                        ///< 1 / (mean of diffuse_passed)
+  float subsurface_ = 0;                           ///< weight of the subsurface lobe
+  Vec3f metal_return_ = Vec3f::Zero();             ///< of multiple scattering among facets, with weight
+  float most_diffuse_, most_diffuse_from_behind_;  ///< largest components of the above
+  float most_returned_;                            ///< and of metal_return_
+  float mean_lost_;                                ///< by the reflection, of what arrives, weighted by 2 mu
   Vec3f absorption_, emission_, albedo_;
   Subsurface inside_;
   AlbedoTable ggx_albedo_, glass_outside_, glass_inside_;

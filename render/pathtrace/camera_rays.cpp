@@ -10,6 +10,7 @@ namespace softreel {
 
 float shutter_time(const ShutterCurve& curve, float u) {
   const float a = curve.opening, c = curve.closing;
+  if (a == 0 && c == 0) return u;
   const float area = 1 - 0.5f * (a + c);  // under the curve, where it is 1 high
   const float opened = 0.5f * a / area, closes = 1 - 0.5f * c / area;
   if (u < opened) return std::sqrt(2 * a * area * u);
@@ -27,7 +28,6 @@ CameraRays::CameraRays(const Scene& scene, int width, int height)
 }
 
 CameraFrame CameraRays::frame_at(float time) const {
-  if (frames_.size() == 1) return frames_.front();
   const float at = time * static_cast<float>(frames_.size() - 1);
   const std::size_t step = std::min(static_cast<std::size_t>(at), frames_.size() - 2);
   const float t = at - static_cast<float>(step);
@@ -51,7 +51,14 @@ Ray CameraRays::ray(int x, int y, const SampleBlock& numbers) const {
   const float up = 1 - 2 * (static_cast<float>(y) + numbers[1]) / static_cast<float>(height_);
   Ray ray;
   ray.time = shutter_time(shutter_, numbers[4]);
-  const CameraFrame camera = frame_at(ray.time);
+  if (frames_.size() == 1)
+    aim(frames_.front(), across, up, numbers, ray);
+  else
+    aim(frame_at(ray.time), across, up, numbers, ray);
+  return ray;
+}
+
+void CameraRays::aim(const CameraFrame& camera, float across, float up, const SampleBlock& numbers, Ray& ray) const {
   ray.origin = camera.position;
   Vec3f towards = camera.window_point(across, up);
   if (camera.lens_radius > 0) {
@@ -61,7 +68,6 @@ Ray CameraRays::ray(int x, int y, const SampleBlock& numbers) const {
     towards = camera.focus_distance * towards - shift;
   }
   ray.direction = towards.normalized();
-  return ray;
 }
 
 }  // namespace softreel

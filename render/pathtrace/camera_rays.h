@@ -24,6 +24,7 @@ class CameraRays {
 
  private:
   CameraFrame frame_at(float time) const;
+  void aim(const CameraFrame& camera, float across, float up, const SampleBlock& numbers, Ray& ray) const;
 
   int width_, height_;
   ShutterCurve shutter_;

@@ -105,6 +105,15 @@ float LightSet::importance(std::size_t k, const Receiver& receiver) const {
   return cosine + reach <= 0 ? 0.0f : sun.importance * std::max(cosine, 0.05f);
 }
 
+bool LightSet::may_reach(std::size_t k, const Receiver& receiver) const {
+  if (k >= lamp_places() || !lamp_tree_.empty()) return importance(k, receiver) > 0;
+  return std::visit(
+      [&](const auto& light) {
+        return light.shines() && (receiver.both_sides || !light.below(receiver.position, receiver.normal));
+      },
+      lamps_[k]);
+}
+
 float LightSet::probability(std::size_t k, const Receiver& receiver) const {
   if (receiver.every_light) return importance(k, receiver) > 0 ? 1.0f : 0.0f;
   if (count() == 1) return 1;
@@ -140,7 +149,7 @@ bool LightSet::sample(const Receiver& receiver, float choice, const Vec2f& u, Li
       if (target < below) break;
     }
     choice = std::clamp((target - start) / (share * sum), 0.0f, 0x1.fffffep-1f);
-  } else if (importance(0, receiver) <= 0) {
+  } else if (!may_reach(0, receiver)) {
     return false;
   }
   const bool found = sample_from(chosen, receiver, choice, u, sample, point_like);
@@ -150,7 +159,7 @@ bool LightSet::sample(const Receiver& receiver, float choice, const Vec2f& u, Li
 
 bool LightSet::sample_light(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
                             bool& point_like) const {
-  return importance(k, receiver) > 0 && sample_from(k, receiver, choice, u, sample, point_like) && sample.pdf > 0;
+  return may_reach(k, receiver) && sample_from(k, receiver, choice, u, sample, point_like) && sample.pdf > 0;
 }
 
 bool LightSet::sample_lamps(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u,

@@ -81,6 +81,9 @@ class LightSet {
   /// Rough irradiance of light k at a receiver.
   float importance(std::size_t k, const Receiver& receiver) const;
   float lamp_importance(const Lamp& lamp, const Receiver& receiver) const;
+  /// False only where importance(k, receiver) is 0. Quicker: a lamp's own sampling finds out whether it shows its
+  /// front.
+  bool may_reach(std::size_t k, const Receiver& receiver) const;
   /// Of light k to be sampled at the receiver.
   float probability(std::size_t k, const Receiver& receiver) const;
   /// Of one lamp.

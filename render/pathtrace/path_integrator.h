@@ -30,6 +30,8 @@ struct Picture {
   std::vector<std::optional<Bsdf>> lines;                ///< per mesh, of its EdgeLines
   std::vector<std::unique_ptr<ColoredSurface>> colored;  ///< per mesh; null for one whose look is the same everywhere
   float pixel = 0;                       ///< m, edge of a pixel of the window one metre ahead of the camera
+  float cone_spread = 0;                 ///< of a camera ray's cone
+  bool has_textures = false;             ///< anything asks how wide a ray's cone is
   std::optional<GroundPattern> pattern;  ///< on the last mesh
   bool catches_shadows = false;          ///< the last mesh is a shadow catcher
   const LightSet* lights = nullptr;
@@ -56,7 +58,7 @@ struct FirstHit {
 class PathIntegrator {
  public:
   PathIntegrator(const Picture& picture, const Sampler& sampler, std::uint32_t sample)
-      : picture_(picture), sampler_(sampler), sample_(sample), cone_{0, picture.pixel * cone_share(picture.samples)} {}
+      : picture_(picture), sampler_(sampler), sample_(sample), cone_{0, picture.cone_spread} {}
 
   /// Radiance arriving at the start of a camera ray.
   Vec3f trace(const Ray& camera_ray);
@@ -64,6 +66,7 @@ class PathIntegrator {
 
  private:
   const Bsdf& bsdf_at(const RayHit& hit, SurfacePoint& point, const Ray& ray);
+  void record_first_hit(const RayHit& hit, const SurfacePoint& point, const Bsdf& bsdf);
   /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
   void collect(const Ray& ray, bool hit, float distance);
   void add(const Vec3f& radiance);
@@ -72,6 +75,9 @@ class PathIntegrator {
   /// Light sampling at a point. view: of `bsdf` from where the path comes; not asked for while light leaves a body.
   void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
                   const SampleBlock& numbers);
+  /// Of every light, or of one of them. share: of the light that counts.
+  void add_lights(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
+                  float choice, const Vec2f& u, float share);
   void add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
                  const LightSample& light, bool point_like);
   /// Continues the path; false where it ends.

@@ -240,9 +240,11 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
     picture.lines.push_back(line_bsdf(*mesh));
     picture.colored.push_back(
         mesh->coloring.empty() ? nullptr : std::make_unique<ColoredSurface>(*mesh, params.caustic_roughness));
+    picture.has_textures = picture.has_textures || !mesh->coloring.maps.empty();
   }
   picture.pixel =
       2 * camera_frame(scene.camera, params.width, params.height).half_width / static_cast<float>(params.width);
+  picture.cone_spread = picture.pixel * cone_share(params.samples);
   if (scene.ground && scene.ground->checker > 0) {
     picture.pattern.emplace(*scene.ground, scene.camera);
     Appearance second = scene.ground->appearance;

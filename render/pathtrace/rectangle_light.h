@@ -40,6 +40,8 @@ class RectangleLight {
 
   const Vec3f& radiance() const { return radiance_; }
   bool visible() const { return visible_; }
+  /// Whether it emits at all.
+  bool shines() const { return luminance_ > 0; }
   /// Rough irradiance at p on a surface facing the light: 0 only if there is none.
   float importance(const Vec3f& p) const;
   /// Whether all of the light is below the plane through p.

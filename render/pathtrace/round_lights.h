@@ -18,6 +18,7 @@ class DiskLight {
   bool intersect(const Vec3f& origin, const Vec3f& direction, float max_distance, float& distance) const;
   const Vec3f& radiance() const { return radiance_; }
   bool visible() const { return visible_; }
+  bool shines() const { return luminance_ > 0; }
   float importance(const Vec3f& p) const;
   bool below(const Vec3f& p, const Vec3f& normal) const;
 
@@ -43,6 +44,7 @@ class SphereLight {
   bool intersect(const Vec3f& origin, const Vec3f& direction, float max_distance, float& distance) const;
   const Vec3f& radiance() const { return radiance_; }
   bool visible() const { return visible_; }
+  bool shines() const { return luminance_ > 0; }
   float importance(const Vec3f& p) const;
   bool below(const Vec3f& p, const Vec3f& normal) const;
 

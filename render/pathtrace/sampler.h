@@ -33,7 +33,13 @@ class Sampler {
   /// Block `block` of point `sample`; numbers in [0, 1). Pure.
   SampleBlock numbers(std::uint32_t sample, std::uint32_t block) const;
 
+  /// The points 2 sample and 2 sample + 1 of a pair of dimensions, block `block`: for what is sampled twice a path.
+  /// Over n samples they are as even as the first 2 n points of any pair. Pure.
+  std::array<Vec2f, 2> two_points(std::uint32_t sample, std::uint32_t block) const;
+
  private:
+  std::uint32_t key(std::uint32_t block) const;
+
   std::uint32_t seed_;
 };
 

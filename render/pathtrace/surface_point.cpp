@@ -16,6 +16,14 @@ void blend(Corners& a, const Corners& b, float t) {
   for (std::size_t k = 0; k < 3; ++k) a[k] += t * (b[k] - a[k]);
 }
 
+/// Of the mesh at a moment. of_time: the positions or the normals.
+Corners moving_corners(const MotionMesh& mesh, std::vector<Vec3f> MotionMesh::Time::*of_time, const Triangle& triangle,
+                       const MeshMoment& moment) {
+  Corners corners = corners_of(mesh.times[moment.step].*of_time, triangle);
+  if (moment.share > 0) blend(corners, corners_of(mesh.times[moment.step + 1].*of_time, triangle), moment.share);
+  return corners;
+}
+
 /// Turns a normal that faces away from the viewer (at silhouettes of coarse meshes) just enough to be seen edge-on.
 Vec3f facing_normal(const Vec3f& normal, const Vec3f& to_viewer) {
   constexpr float kGrazing = 0.01f;
@@ -28,8 +36,9 @@ Vec3f facing_normal(const Vec3f& normal, const Vec3f& to_viewer) {
 Vec3f bulge(const Corners& p, const Corners& n, const std::array<float, 3>& weights, const Vec3f& at, float side) {
   Vec3f sum = Vec3f::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
-    const float depth = side * (at - p[k]).dot(n[k]);
-    if (depth < 0) sum -= (weights[k] * depth * side) * n[k];
+    // No branch: which corners are above is as good as chance.
+    const float depth = std::min(side * (at - p[k]).dot(n[k]), 0.0f);
+    sum -= (weights[k] * depth * side) * n[k];
   }
   return sum;
 }
@@ -38,24 +47,21 @@ Vec3f bulge(const Corners& p, const Corners& n, const std::array<float, 3>& weig
 
 MeshMoment moment_of(const MotionMesh& mesh, const Ray& ray) {
   const std::size_t last = mesh.times.size() - 1;
+  if (last == 0) return {};
   const float at = ray.time * static_cast<float>(last);
-  const std::size_t step = last == 0 ? 0 : std::min(static_cast<std::size_t>(at), last - 1);
+  const std::size_t step = std::min(static_cast<std::size_t>(at), last - 1);
   return {step, at - static_cast<float>(step)};
 }
 
 Corners hit_corners(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) {
-  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(hit.triangle)];
-  const auto [step, t] = moment_of(mesh, ray);
-  Corners p = corners_of(mesh.times[step].positions, triangle);
-  if (t > 0) blend(p, corners_of(mesh.times[step + 1].positions, triangle), t);
-  return p;
+  return moving_corners(mesh, &MotionMesh::Time::positions, mesh.triangles[static_cast<std::size_t>(hit.triangle)],
+                        moment_of(mesh, ray));
 }
 
 SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) {
   const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(hit.triangle)];
-  const auto [step, t] = moment_of(mesh, ray);
-  const MotionMesh::Time& opening = mesh.times[step];
-  const Corners p = hit_corners(mesh, hit, ray);
+  const MeshMoment moment = moment_of(mesh, ray);
+  const Corners p = moving_corners(mesh, &MotionMesh::Time::positions, triangle, moment);
 
   SurfacePoint point;
   const std::array<float, 3> weights{1 - hit.u - hit.v, hit.u, hit.v};
@@ -68,9 +74,8 @@ SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray&
   point.lifted = point.position + epsilon * point.geometric_normal;
   point.lowered = point.position - epsilon * point.geometric_normal;
   point.shading_normal = point.geometric_normal;
-  if (opening.normals.empty()) return point;
-  Corners n = corners_of(opening.normals, triangle);
-  if (t > 0) blend(n, corners_of(mesh.times[step + 1].normals, triangle), t);
+  if (mesh.times.front().normals.empty()) return point;
+  const Corners n = moving_corners(mesh, &MotionMesh::Time::normals, triangle, moment);
   const Vec3f mean = side * (weights[0] * n[0] + weights[1] * n[1] + weights[2] * n[2]);
   const float length = mean.norm();
   if (length > 1e-6f) point.shading_normal = facing_normal(mean / length, -ray.direction);

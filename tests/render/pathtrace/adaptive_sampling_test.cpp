@@ -46,7 +46,7 @@ double mean_samples(const Image& image) {
 TEST(AdaptiveSampling, MeetsItsTargetAndTakesFewerSamplesThanTheWholePictureWouldNeed) {
   const Image converged = rendered(mixed_scene(), small_params(32, 4096));
   RenderParams params = small_params(32, 1024);
-  for (const float noise : {0.02f, 0.008f}) {
+  for (const float noise : {0.01f, 0.007f}) {
     params.noise = noise;
     const Image adaptive = rendered(mixed_scene(), params);
     const double error = screen_difference(adaptive, converged);

@@ -99,6 +99,30 @@ TEST(Bsdf, SamplesCarryTheValueOverTheDensity) {
   }
 }
 
+TEST(Bsdf, EachLobeGetsPointsAsEvenAsAllAre) {
+  // Every other lobe of this metal in paint is its cosine lobe: of n even points as many fall into each part of its
+  // disk as belong there, but for those at the parts' edges. Were the lobe chosen by chance of its own, their number in
+  // a half disk would be off by about sqrt(n) / 4.
+  Appearance appearance = make_case("paint", 0.2f, 0.5f, 0, 0).appearance;
+  appearance.base_color = appearance.metal_color.emplace(Vec3f::Constant(0.8f));
+  const Bsdf bsdf(appearance);
+  const BsdfView view = bsdf.seen_from(direction(0.6f, 0.3f), false);
+  constexpr int kPoints = 4096;
+  double squares = 0;
+  constexpr int kPixels = 16;
+  for (int pixel = 0; pixel < kPixels; ++pixel) {
+    const Sampler sampler(1, pixel, 0);
+    int left = 0;
+    for (std::uint32_t s = 0; s < kPoints; ++s) {
+      const SampleBlock u = sampler.numbers(s, 0);
+      BsdfSample sample;
+      if (bsdf.sample(view, u[2], Vec2f(u[0], u[1]), sample) && sample.wide && sample.direction.x() < 0) ++left;
+    }
+    squares += std::pow(left - 0.5 * static_cast<double>(view.shares.cosine) * kPoints, 2);
+  }
+  EXPECT_LT(std::sqrt(squares / kPixels), 0.25 * std::sqrt(kPoints) / 3);
+}
+
 TEST(Bsdf, SamplingGivesTheSameAlbedoAsIntegration) {
   for (const Case& c : smooth_cases()) {
     const Bsdf bsdf(c.appearance);

@@ -27,6 +27,22 @@ TEST(Sampler, EveryPairIsAZeroTwoSequence) {
       }
 }
 
+TEST(Sampler, TwoPointsASampleAreAZeroTwoSequence) {
+  // Of n samples, 2 n points: one in each elementary interval of area 1 / (2 n).
+  const Sampler sampler(43, 2, 9);
+  constexpr int kLog = 5, kPoints = 1 << kLog;
+  for (int split = 0; split <= kLog; ++split) {
+    std::set<int> cells;
+    for (std::uint32_t s = 0; s < kPoints / 2; ++s)
+      for (const Vec2f& u : sampler.two_points(s, 3)) {
+        const int column = static_cast<int>(u.x() * static_cast<float>(1 << split));
+        const int row = static_cast<int>(u.y() * static_cast<float>(1 << (kLog - split)));
+        cells.insert(row * (1 << split) + column);
+      }
+    EXPECT_EQ(cells.size(), kPoints) << "split " << split;
+  }
+}
+
 TEST(Sampler, NumbersAreInTheHalfOpenUnitInterval) {
   const Sampler sampler(7, 0, 0);
   for (std::uint32_t s = 0; s < 4096; ++s)
