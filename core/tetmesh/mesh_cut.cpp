@@ -3,22 +3,19 @@
 #include "core/base/check.h"
 
 namespace softreel {
-namespace {
-
-bool is_kept(const TetMesh& mesh, const Tet& tet, const CutPlane& plane) {
+bool is_behind(const TetMesh& mesh, Index element, const CutPlane& plane) {
   double sum = 0;
-  for (const Index node : tet) sum += (mesh.nodes[static_cast<std::size_t>(node)] - plane.point).dot(plane.normal);
+  for (const Index node : mesh.tets[static_cast<std::size_t>(element)])
+    sum += (mesh.nodes[static_cast<std::size_t>(node)] - plane.point).dot(plane.normal);
   return sum <= 0;
 }
-
-}  // namespace
 
 MeshCut cut_mesh(const TetMesh& mesh, const CutPlane& plane) {
   TetMesh part{mesh.nodes, {}, {}};
   std::vector<Index> element_of;  // per element of the part
   std::vector<char> kept(mesh.tets.size(), 0);
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
-    if (!is_kept(mesh, mesh.tets[e], plane)) continue;
+    if (!is_behind(mesh, static_cast<Index>(e), plane)) continue;
     kept[e] = 1;
     part.tets.push_back(mesh.tets[e]);
     element_of.push_back(static_cast<Index>(e));

@@ -13,6 +13,9 @@ struct CutPlane {
   Vec3 normal = Vec3::UnitX();  ///< need not be unit
 };
 
+/// Whether an element is kept.
+bool is_behind(const TetMesh& mesh, Index element, const CutPlane& plane);
+
 /// A face of a kept element that no other kept element has.
 struct CutFace {
   Triangle nodes;  ///< counter-clockwise seen from outside of what is kept

@@ -20,7 +20,10 @@ class Preview {
  public:
   virtual ~Preview() = default;
   /// The scene at the closing of the shutter, seen by the same camera, lit by its lights; the first four that can cast
-  /// shadows of the bodies do. Bodies have the colours of their vertices or their heat, but no textures.
+  /// shadows of the bodies do. Materials look about as the path tracer has them: textures, colours of vertices, heat,
+  /// lines along edges, coat, sheen and emission; of glass the nearest surface, and what is behind without refraction;
+  /// nothing of light that scatters inside or from body to body. A ground that catches shadows leaves the picture's
+  /// alpha, without the soft shadow of the surroundings.
   virtual DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure,
                             const PreviewStyle& style) = 0;
   DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure) {

@@ -13,10 +13,6 @@ namespace {
 
 constexpr float kHalfPi = 1.57079632679f;
 constexpr int kArcSegments = 48;
-/// A sweep is cut into so many cells across. It stands askew in the world: the boxes that a tree puts round long strips
-/// would overlap, and every ray would have to try dozens of them (measured: 6 % of the time of a picture).
-constexpr int kSweepCells = 64;
-
 struct Axes {
   Vec3f across, along;  ///< horizontal; along: away from the camera
 };
@@ -55,18 +51,19 @@ void add_row(MotionMesh& mesh, const Vec3f& middle, const Vec3f& half_width, con
 }
 
 /// Adds rows at equal steps up to and without the end.
-void add_flat(MotionMesh& mesh, const Vec3f& begin, const Vec3f& end, const Vec3f& half_width, const Vec3f& normal) {
-  const float cell = 2 * half_width.norm() / kSweepCells;
+void add_flat(MotionMesh& mesh, const Vec3f& begin, const Vec3f& end, const Vec3f& half_width, const Vec3f& normal,
+              int cells) {
+  const float cell = 2 * half_width.norm() / static_cast<float>(cells);
   const int steps = std::max(1, static_cast<int>(std::lround((end - begin).norm() / cell)));
   for (int k = 0; k < steps; ++k) {
     const Vec3f middle = begin + static_cast<float>(k) / static_cast<float>(steps) * (end - begin);
-    add_row(mesh, middle, half_width, normal, kSweepCells);
+    add_row(mesh, middle, half_width, normal, cells);
   }
 }
 
 }  // namespace
 
-MotionMesh ground_mesh(const Ground& ground, const Camera& camera) {
+MotionMesh ground_mesh(const Ground& ground, const Camera& camera, int cells) {
   if (!(ground.size > 0) || (ground.style == GroundStyle::Sweep && !(ground.sweep > 0)))
     throw input_error(
         fmt::format("ground.size = {}, ground.sweep = {} leave no ground.\n"
@@ -86,15 +83,15 @@ MotionMesh ground_mesh(const Ground& ground, const Camera& camera) {
   }
   const float radius = arc_radius(ground);
   const Vec3f bend = origin + ground.sweep * axes.along, center = bend + radius * up;
-  add_flat(mesh, origin - half * axes.along, bend, half_width, up);
+  add_flat(mesh, origin - half * axes.along, bend, half_width, up, cells);
   for (int k = 0; k < kArcSegments; ++k) {
     const float angle = kHalfPi * static_cast<float>(k) / kArcSegments;
     const Vec3f outward = std::sin(angle) * axes.along - std::cos(angle) * up;
-    add_row(mesh, center + radius * outward, half_width, -outward, kSweepCells);
+    add_row(mesh, center + radius * outward, half_width, -outward, cells);
   }
   const Vec3f wall = center + radius * axes.along, top = wall + half * up;
-  add_flat(mesh, wall, top, half_width, -axes.along);
-  add_row(mesh, top, half_width, -axes.along, kSweepCells);
+  add_flat(mesh, wall, top, half_width, -axes.along, cells);
+  add_row(mesh, top, half_width, -axes.along, cells);
   return mesh;
 }
 

@@ -8,7 +8,10 @@ namespace softreel {
 /// A square around the origin (Plane), or the studio backdrop (Sweep): the square as far as `sweep` metres away from
 /// the camera, then a quarter circle of radius sweep / 2, then a wall. Normals are smooth and exact on the arc. Throws
 /// input_error for a size or sweep that leaves no ground.
-MotionMesh ground_mesh(const Ground& ground, const Camera& camera);
+///
+/// cells: of a Sweep, across. It stands askew in the world: the boxes that a tree puts round long strips would overlap,
+/// and every ray would have to try dozens of them (measured: 6 % of the time of a picture).
+MotionMesh ground_mesh(const Ground& ground, const Camera& camera, int cells = 64);
 
 /// The two-tone pattern; on a Sweep its squares follow the backdrop up the wall.
 class GroundPattern {

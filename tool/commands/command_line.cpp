@@ -88,6 +88,19 @@ void add_preview_command(CLI::App& app, Parsed& parsed, Runner& run) {
       ->expected(1)
       ->check(CLI::IsMember({"pins", "pulls", "regions", "all", "none"}))
       ->group("Picture");
+  preview
+      ->add_option("--kind", options.kind,
+                   "surface: the bodies; tets: their tetrahedra behind a plane, at the cut tinted by their smallest "
+                   "angle, or all in the colours of render.heat [surface; tets with --cut]")
+      ->check(CLI::IsMember({"surface", "tets"}))
+      ->group("Picture");
+  preview
+      ->add_option("--cut", options.cut,
+                   "of tets, through the bodies at rest: x | y | z: through the middle, seen from there; -x | -y | -z: "
+                   "from the other side; x=0.3: at that share of the box; X,Y,Z:NX,NY,NZ: a point and the direction to "
+                   "look against [the middle, towards the camera]")
+      ->option_text("PLANE")
+      ->group("Picture");
   preview->add_flag("--wireframe", options.wireframe, "draw the edges of the bodies' triangles")->group("Picture");
   preview->callback([&] { run = [&parsed] { return run_preview(parsed.preview); }; });
 }

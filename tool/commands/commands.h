@@ -56,6 +56,8 @@ int run_export(const ExportOptions& options);
 struct PreviewOptions {
   ShotOptions shot;
   std::string mode = "shadows";  ///< fast | shadows
+  std::string kind;              ///< surface | tets; empty: tets if there is a cut
+  std::string cut;               ///< see cut_plane in tool/report/cut_plane.h; empty: chosen
   bool wireframe = false;
   std::vector<std::string> gizmos = {"pins", "pulls"};  ///< of pins, pulls, regions; or all, or none
 };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include "render/image/burn_in.h"
 #include "render/preview/preview.h"
 #include "tool/commands/commands.h"
+#include "tool/commands/preview_cut.h"
 #include "tool/stages/gizmos.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/outputs.h"
@@ -28,6 +30,19 @@ GizmoKinds gizmo_kinds(const std::vector<std::string>& names) {
   return {has("all") || has("pins"), has("all") || has("pulls"), has("all") || has("regions")};
 }
 
+bool shows_tets(const PreviewOptions& options) {
+  return options.kind == "tets" || !options.cut.empty();
+}
+
+void check_cut_options(const PreviewOptions& options) {
+  check_cut(options.cut);
+  if (options.kind == "surface" && !options.cut.empty())
+    throw input_error(
+        fmt::format("--cut {}: a surface has no inside to show.\n  Accepted: --cut with --kind tets. Leave out --kind "
+                    "surface or --cut.",
+                    options.cut));
+}
+
 /// The frames of one playblast on their way to files.
 class Playblast {
  public:
@@ -38,7 +53,9 @@ class Playblast {
         scenes_(run),
         gizmos_(run, gizmo_kinds(options.gizmos)),
         fast_(options.mode == "fast"),
-        wireframe_(options.wireframe) {}
+        wireframe_(options.wireframe) {
+    if (shows_tets(options)) cut_.emplace(run, scenes_, options.cut);
+  }
 
   /// Writes the picture of a frame unless it is there. True if it was drawn.
   bool make(int frame) {
@@ -52,10 +69,14 @@ class Playblast {
       preview_ = make_egl_preview();
       session_.console().info("preview on " + preview_->description());
     }
-    const std::vector<SkinnedBody> bodies = run_.skin(frame, still_request(run_.shot().render));
-    const Scene scene = scenes_.at(frame, bodies);
+    SkinRequest request = still_request(run_.shot().render);
+    request.nodes = cut_.has_value();
+    const std::vector<SkinnedBody> bodies = run_.skin(frame, request);
+    Scene scene = scenes_.at(frame, bodies);
+    if (cut_) cut_->replace_bodies(frame, bodies, scene);
     const auto start = std::chrono::steady_clock::now();
-    const Bytes png = encode_png(draw(frame, scene, gizmos_.at(frame, bodies)));
+    const std::vector<std::vector<char>> shown = cut_ ? cut_->shown_points() : std::vector<std::vector<char>>{};
+    const Bytes png = encode_png(draw(frame, scene, gizmos_.at(frame, bodies, shown)));
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     outputs_.write(path, key, png, seconds.count());
     return true;
@@ -65,9 +86,10 @@ class Playblast {
  private:
   StageKey file_key(int frame) const {
     const OutputSettings& output = run_.shot().output;
-    KeyHasher key("preview 6");
+    KeyHasher key("preview 7");
     key.add(scenes_.preview_key(frame)).add(output.view).add(output.exposure).add(fast_).add(wireframe_);
     gizmos_.add_key(key, frame);
+    if (cut_) cut_->add_key(key);
     if (output.burn_in) {
       const BurnIn words = frame_words(run_.shot().settings, frame);
       key.add(words.left).add(words.right);
@@ -90,6 +112,7 @@ class Playblast {
   Outputs& outputs_;
   SceneStage scenes_;
   Gizmos gizmos_;
+  std::optional<PreviewCut> cut_;  ///< of the tetrahedra, where they are shown
   bool fast_, wireframe_;
   std::unique_ptr<Preview> preview_;  ///< made when the first frame has to be drawn
   double saved_seconds_ = 0;
@@ -98,6 +121,7 @@ class Playblast {
 }  // namespace
 
 int run_preview(const PreviewOptions& options) {
+  check_cut_options(options);
   if (options.shot.dry_run) return run_plan(options.shot);
   Session session(options.shot);
   const Shot& shot = session.shot();

@@ -13,7 +13,7 @@ namespace softreel {
 /// What a command was asked for on its line.
 struct PictureOptions {
   std::string path;  ///< file to write, .png; empty: no picture
-  std::string cut;   ///< see cut_plane in cut_picture.h; empty: chosen
+  std::string cut;   ///< see cut_plane in cut_plane.h; empty: chosen
   std::string size = "1600x1200";
 };
 

@@ -88,19 +88,24 @@ Gizmos::Gizmos(const ShotRun& run, const GizmoKinds& kinds) : run_(run), kinds_(
   }
 }
 
-GizmoMarks Gizmos::at(int frame, const std::vector<SkinnedBody>& bodies) const {
+GizmoMarks Gizmos::at(int frame, const std::vector<SkinnedBody>& bodies,
+                      const std::vector<std::vector<char>>& shown) const {
   GizmoMarks marks;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto dots = [&](std::vector<Index> points) {
+      if (!shown.empty()) std::erase_if(points, [&](Index p) { return shown[b][static_cast<std::size_t>(p)] == 0; });
+      return points;
+    };
     const Points& points = bodies[b].times.back().positions;
     const BodyMarks& body = bodies_[b];
     const std::vector<Pin>& pins = body.constraints.pins;
     const std::vector<Pull>& pulls = body.constraints.pulls;
     const Grab nothing;
-    if (kinds_.regions) add_dots(marks, points, body.region_dots, kRegionColor);
+    if (kinds_.regions) add_dots(marks, points, dots(body.region_dots), kRegionColor);
     for (std::size_t k = 0; kinds_.pins && k < pins.size(); ++k)
-      if (is_active(pins[k].active, frame)) add_dots(marks, points, body.pin_dots[k], kPinColor);
+      if (is_active(pins[k].active, frame)) add_dots(marks, points, dots(body.pin_dots[k]), kPinColor);
     for (std::size_t k = 0; kinds_.pulls && k < pulls.size(); ++k)
-      add_pull(marks, pulls[k], body.pull_dots[k], run_.loaded(b).surface.positions, points, frame,
+      add_pull(marks, pulls[k], dots(body.pull_dots[k]), run_.loaded(b).surface.positions, points, frame,
                k < bodies[b].pull_grabs.size() ? bodies[b].pull_grabs[k] : nothing);
   }
   return marks;

@@ -22,8 +22,10 @@ class Gizmos {
   /// run: kept by reference.
   Gizmos(const ShotRun& run, const GizmoKinds& kinds);
 
-  /// bodies: the surfaces at this frame.
-  GizmoMarks at(int frame, const std::vector<SkinnedBody>& bodies) const;
+  /// bodies: the surfaces at this frame. shown: per body and point of its surface, 0 where it gets no mark; empty: all
+  /// may get one.
+  GizmoMarks at(int frame, const std::vector<SkinnedBody>& bodies,
+                const std::vector<std::vector<char>>& shown = {}) const;
   /// All that the marks depend on beyond the surfaces.
   void add_key(KeyHasher& key, int frame) const;
 

@@ -39,6 +39,13 @@ std::vector<double> element_values(HeatQuantity quantity, const HeatSource& sour
   return values;
 }
 
+double mean_displacement(const Tet& tet, const std::vector<Vec3>& rest, const std::vector<Vec3>& deformed) {
+  double sum = 0;
+  for (const Index node : tet)
+    sum += (deformed[static_cast<std::size_t>(node)] - rest[static_cast<std::size_t>(node)]).norm();
+  return 0.25 * sum;
+}
+
 /// A unit in which the range's end is a number of a few digits.
 LegendUnit unit_of(HeatQuantity quantity, double size) {
   if (quantity == HeatQuantity::Strain) return {"%", 100};
@@ -63,6 +70,16 @@ std::vector<double> heat_values(HeatQuantity quantity, const HeatSource& source,
   std::vector<double> distances(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) distances[i] = (points[i] - source.rest_points[i]).norm();
   return distances;
+}
+
+std::vector<double> element_heat_values(HeatQuantity quantity, const HeatSource& source, const Threads& threads) {
+  CHECK(quantity != HeatQuantity::None);
+  if (quantity != HeatQuantity::Displacement) return element_values(quantity, source, threads);
+  const TetMesh& mesh = source.filled.mesh;
+  std::vector<double> values;
+  values.reserve(mesh.tets.size());
+  for (const Tet& tet : mesh.tets) values.push_back(mean_displacement(tet, mesh.nodes, source.node_positions));
+  return values;
 }
 
 double round_up(double x) {

@@ -24,6 +24,10 @@ struct HeatSource {
 /// to the points by way of the nodes (skin_values).
 std::vector<double> heat_values(HeatQuantity quantity, const HeatSource& source, const Threads& threads);
 
+/// The same in each element, where strain and stress of linear elements are constant; of displacement the mean of the
+/// nodes' distances from rest.
+std::vector<double> element_heat_values(HeatQuantity quantity, const HeatSource& source, const Threads& threads);
+
 /// What the ends of the colours mean.
 struct HeatRange {
   double low = 0, high = 1;

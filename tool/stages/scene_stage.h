@@ -41,6 +41,8 @@ class SceneStage {
   HeatRange heat_range() const;
   /// Draws the legend of the shot's heat on a picture, if the shot shows any.
   void draw_legend(DisplayImage& image) const;
+  /// Of the picture of a frame.
+  Camera camera(double frame) const;
 
  private:
   bool shows_heat() const { return run_.shot().render.heat.quantity != HeatQuantity::None; }
@@ -58,7 +60,6 @@ class SceneStage {
   void add_coloring(KeyHasher& key) const;
   void add_look(KeyHasher& key, const Look& look) const;
   void add_tracing(KeyHasher& key, const std::vector<Camera>& camera_motion) const;
-  Camera camera(double frame) const;
   std::vector<Camera> camera_motion(int frame) const;
 
   ShotRun& run_;

@@ -144,13 +144,23 @@ StageKey ShotRun::all_frames_key() const {
   return key.key();
 }
 
-std::vector<double> ShotRun::heat(std::size_t index, int frame, HeatQuantity quantity) {
-  Body& body = *bodies_[index];
+HeatSource ShotRun::heat_source(Body& body, std::size_t index, int frame) {
   const std::vector<Vec3>& nodes = body.simulation->at(frame).state.positions;
   const FilledBody& filled = body.simulation->filled();
-  const ScopedStage stage(context_.times, "heat");
   if (body.materials.empty()) body.materials = element_materials(shot_, settings(index), body.loaded, filled.mesh);
-  return heat_values(quantity, {body.loaded.surface.positions, filled, body.materials, nodes}, context_.threads);
+  return {body.loaded.surface.positions, filled, body.materials, nodes};
+}
+
+std::vector<double> ShotRun::heat(std::size_t index, int frame, HeatQuantity quantity) {
+  const HeatSource source = heat_source(*bodies_[index], index, frame);
+  const ScopedStage stage(context_.times, "heat");
+  return heat_values(quantity, source, context_.threads);
+}
+
+std::vector<double> ShotRun::element_heat(std::size_t index, int frame, HeatQuantity quantity) {
+  const HeatSource source = heat_source(*bodies_[index], index, frame);
+  const ScopedStage stage(context_.times, "heat");
+  return element_heat_values(quantity, source, context_.threads);
 }
 
 std::vector<Vec3> positions_between(const std::vector<const std::vector<Vec3>*>& steps, double time) {

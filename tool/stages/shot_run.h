@@ -17,6 +17,8 @@
 
 namespace softreel {
 
+struct HeatSource;
+
 /// The surface of a body at the times of the shutter; one time where there is no motion blur.
 struct SkinnedBody {
   struct Time {
@@ -91,6 +93,8 @@ class ShotRun {
   void skin_times(std::size_t body, int frame, const SkinRequest& request, const TakeSkin& take);
   /// A quantity at the vertices of a body's surface at a frame.
   std::vector<double> heat(std::size_t body, int frame, HeatQuantity quantity);
+  /// The same in the elements of a body.
+  std::vector<double> element_heat(std::size_t body, int frame, HeatQuantity quantity);
   /// Everything that this quantity depends on, at the frames of the whole shot.
   StageKey all_frames_key() const;
   /// Summed over the bodies; of frames up to `last`.
@@ -100,6 +104,8 @@ class ShotRun {
   struct Body;
   void resolve(std::size_t index, BodyConstraints constraints, DialUse use);
   void join_glued();
+  /// Simulates and fills the body if it is not yet.
+  HeatSource heat_source(Body& body, std::size_t index, int frame);
 
   std::vector<Vec3> previous_nodes(Body& body, int frame, const SkinRequest& request) const;
   void skin_times(Body& body, int frame, const SkinRequest& request, const std::vector<Vec3>& previous,

@@ -1,10 +1,10 @@
-/// Programs, canvases and buffers of OpenGL as objects. Part of preview_egl.cpp, which alone may include it.
+/// Programs and canvases of OpenGL as objects. Part of the EGL back end, which alone may include it.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,8 +14,8 @@
 #include "render/image/image_io.h"
 #include "render/preview/egl/egl_context.h"
 #include "render/preview/egl/preview_shaders.h"
-#include "render/preview/gizmo_marks.h"
-#include "render/scene/scene.h"
+#include "render/preview/picture_regions.h"
+#include "render/preview/read_pixels.h"
 
 namespace softreel {
 
@@ -53,23 +53,19 @@ class GlProgram {
   GLuint id_;
 };
 
-/// Colour and depth of one picture with some samples a pixel, and the plain picture they are resolved to.
+/// Colour and depth of one picture: some samples a pixel in one part of it, and one in the rest.
 class Canvas {
  public:
-  /// samples: a pixel; 0 for one without anti-aliasing.
+  /// samples: a pixel; 0 for one without anti-aliasing, which has no other part.
   Canvas(int width, int height, int samples) : width_(width), height_(height), samples_(samples) {
     glGenFramebuffers(2, framebuffers_);
-    glGenRenderbuffers(3, buffers_);
-    attach(framebuffers_[0], buffers_[0], GL_COLOR_ATTACHMENT0, GL_RGBA8, samples);
-    attach(framebuffers_[0], buffers_[1], GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24, samples);
-    attach(framebuffers_[1], buffers_[2], GL_COLOR_ATTACHMENT0, GL_RGBA8, 0);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_[0]);
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-      throw unusable(fmt::format("it has no room for a picture of {} x {} pixels", width, height));
+    glGenRenderbuffers(4, buffers_);
+    attach(framebuffers_[0], buffers_[0], buffers_[1], samples);
+    if (samples > 0) attach(framebuffers_[1], buffers_[2], buffers_[3], 0);
   }
   ~Canvas() {
     glDeleteFramebuffers(2, framebuffers_);
-    glDeleteRenderbuffers(3, buffers_);
+    glDeleteRenderbuffers(4, buffers_);
   }
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
@@ -77,37 +73,46 @@ class Canvas {
   bool is(int width, int height, int samples) const {
     return width == width_ && height == height_ && samples == samples_;
   }
-  /// Drawing goes here from now on.
-  void bind() const {
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_[0]);
-    glViewport(0, 0, width_, height_);
-  }
+  /// Drawing goes to the part with samples from now on, or to the one without.
+  void bind_fine() const { bind(framebuffers_[0]); }
+  void bind_coarse() const { bind(framebuffers_[1]); }
 
-  DisplayImage read() const {
+  /// fine: the part with samples. with_alpha: what was drawn is premultiplied, over nothing.
+  DisplayImage read(bool with_alpha, const PixelRect& fine) const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers_[0]);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffers_[1]);
-    glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers_[1]);
-    const std::size_t row = 3 * static_cast<std::size_t>(width_), rows = static_cast<std::size_t>(height_);
-    std::vector<std::uint8_t> upside_down(row * rows);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
-    DisplayImage image{width_, height_, std::vector<std::uint8_t>(row * rows)};
-    for (std::size_t y = 0; y < rows; ++y) std::memcpy(&image.pixels[y * row], &upside_down[(rows - 1 - y) * row], row);
-    return image;
+    if (samples_ > 0) {
+      glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffers_[1]);
+      if (!fine.empty())
+        glBlitFramebuffer(fine.left, fine.bottom, fine.right, fine.top, fine.left, fine.bottom, fine.right, fine.top,
+                          GL_COLOR_BUFFER_BIT, GL_NEAREST);
+      glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers_[1]);
+    }
+    std::vector<std::uint8_t> pixels(4 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    return with_alpha ? transparent_picture(pixels, width_, height_) : opaque_picture(pixels, width_, height_);
   }
 
  private:
-  void attach(GLuint framebuffer, GLuint buffer, GLenum role, GLenum format, int samples) const {
-    glBindRenderbuffer(GL_RENDERBUFFER, buffer);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width_, height_);
+  void bind(GLuint framebuffer) const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, role, GL_RENDERBUFFER, buffer);
+    glViewport(0, 0, width_, height_);
+  }
+  void attach(GLuint framebuffer, GLuint color, GLuint depth, int samples) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    for (const auto& [buffer, role, format] : {std::tuple(color, GL_COLOR_ATTACHMENT0, GL_RGBA8),
+                                               std::tuple(depth, GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT24)}) {
+      glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+      glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, static_cast<GLenum>(format), width_, height_);
+      glFramebufferRenderbuffer(GL_FRAMEBUFFER, static_cast<GLenum>(role), GL_RENDERBUFFER, buffer);
+    }
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+      throw unusable(fmt::format("it has no room for a picture of {} x {} pixels", width_, height_));
   }
 
   int width_, height_, samples_;
-  GLuint framebuffers_[2] = {};
-  GLuint buffers_[3] = {};
+  GLuint framebuffers_[2] = {};  ///< fine, coarse
+  GLuint buffers_[4] = {};       ///< colours and depths of either
 };
 
 /// Depths of the bodies as lights see them: layers of one texture, compared when it is read.
@@ -115,6 +120,7 @@ class ShadowLayers {
  public:
   explicit ShadowLayers(int layers) {
     glGenTextures(1, &texture_);
+    glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D_ARRAY, texture_);
     glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_DEPTH_COMPONENT24, kShadowSize, kShadowSize, layers, 0, GL_DEPTH_COMPONENT,
                  GL_UNSIGNED_INT, nullptr);
@@ -143,99 +149,6 @@ class ShadowLayers {
 
  private:
   GLuint texture_ = 0, framebuffer_ = 0;
-};
-
-/// A mesh at the closing of the shutter, in buffers that live on from frame to frame.
-class GpuMesh {
- public:
-  GpuMesh() {
-    glGenVertexArrays(1, &array_);
-    glGenBuffers(4, buffers_);
-  }
-  ~GpuMesh() {
-    glDeleteBuffers(4, buffers_);
-    glDeleteVertexArrays(1, &array_);
-  }
-  GpuMesh(const GpuMesh&) = delete;
-  GpuMesh& operator=(const GpuMesh&) = delete;
-
-  /// Where it has no colour of its own at the vertices it takes base_color.
-  void upload(const MotionMesh& mesh, const std::vector<Vec3f>& colors) {
-    const MotionMesh::Time& time = mesh.times.back();
-    base_color_ = mesh.appearance.base_color;
-    has_colors_ = !colors.empty();
-    glBindVertexArray(array_);
-    fill(0, time.positions);
-    fill(1, time.normals);
-    fill(2, colors);
-    send(GL_ELEMENT_ARRAY_BUFFER, buffers_[3], mesh.triangles);
-    indices_ = static_cast<GLsizei>(3 * mesh.triangles.size());
-  }
-  void draw() const {
-    glBindVertexArray(array_);
-    if (!has_colors_) glVertexAttrib3fv(2, base_color_.data());
-    glDrawElements(GL_TRIANGLES, indices_, GL_UNSIGNED_INT, nullptr);
-  }
-
- private:
-  template <typename T>
-  static void send(GLenum target, GLuint buffer, const std::vector<T>& values) {
-    glBindBuffer(target, buffer);
-    glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data(), GL_STREAM_DRAW);
-  }
-  /// An attribute per vertex; without values the vertices share one.
-  void fill(GLuint attribute, const std::vector<Vec3f>& values) {
-    if (values.empty()) {
-      glDisableVertexAttribArray(attribute);
-      return;
-    }
-    send(GL_ARRAY_BUFFER, buffers_[attribute], values);
-    glVertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glEnableVertexAttribArray(attribute);
-  }
-
-  GLuint array_ = 0;
-  GLuint buffers_[4] = {};  ///< positions, normals, colours, triangles
-  GLsizei indices_ = 0;
-  bool has_colors_ = false;
-  Vec3f base_color_ = Vec3f::Zero();
-};
-
-/// Buffers of the triangles that marks are drawn as.
-class GpuMarks {
- public:
-  GpuMarks() {
-    glGenVertexArrays(1, &array_);
-    glGenBuffers(1, &buffer_);
-    glBindVertexArray(array_);
-    glBindBuffer(GL_ARRAY_BUFFER, buffer_);
-    add_attribute(0, 4, offsetof(OverlayVertex, clip));
-    add_attribute(1, 2, offsetof(OverlayVertex, disk));
-    add_attribute(2, 3, offsetof(OverlayVertex, color));
-  }
-  ~GpuMarks() {
-    glDeleteBuffers(1, &buffer_);
-    glDeleteVertexArrays(1, &array_);
-  }
-  GpuMarks(const GpuMarks&) = delete;
-  GpuMarks& operator=(const GpuMarks&) = delete;
-
-  void draw(const std::vector<OverlayVertex>& triangles) const {
-    glBindVertexArray(array_);
-    glBindBuffer(GL_ARRAY_BUFFER, buffer_);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size() * sizeof(OverlayVertex)), triangles.data(),
-                 GL_STREAM_DRAW);
-    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(triangles.size()));
-  }
-
- private:
-  static void add_attribute(GLuint attribute, GLint numbers, std::size_t offset) {
-    glVertexAttribPointer(attribute, numbers, GL_FLOAT, GL_FALSE, sizeof(OverlayVertex),
-                          reinterpret_cast<const void*>(offset));
-    glEnableVertexAttribArray(attribute);
-  }
-
-  GLuint array_ = 0, buffer_ = 0;
 };
 
 }  // namespace softreel

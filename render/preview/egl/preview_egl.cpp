@@ -1,22 +1,25 @@
-/// The preview on EGL. It and the headers in egl/ are the only places that know EGL and OpenGL.
+/// The preview on EGL. The files of egl/ are the only ones that know EGL and OpenGL.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "render/preview/egl/egl_context.h"
 #include "render/preview/egl/gl_objects.h"
+#include "render/preview/egl/gpu_meshes.h"
+#include "render/preview/egl/gpu_textures.h"
 #include "render/preview/egl/preview_shaders.h"
+#include "render/preview/egl/surface_programs.h"
+#include "render/preview/picture_regions.h"
 #include "render/preview/preview.h"
 #include "render/preview/shadow_views.h"
 #include "render/scene/camera_frame.h"
-#include "render/scene/color_map.h"
 #include "render/scene/environment_radiance.h"
 #include "render/scene/ground_mesh.h"
 
@@ -78,19 +81,6 @@ Environment as_gradient(const Environment& environment) {
   return gradient;
 }
 
-/// What a lamp shows to a point that it faces, m^2.
-float seen_area(const AreaLight& lamp) {
-  switch (lamp.shape) {
-    case LampShape::Rectangle:
-      return 4 * lamp.u.cross(lamp.v).norm();
-    case LampShape::Disk:
-      return kPi * lamp.u.cross(lamp.v).norm();
-    case LampShape::Sphere:
-      break;
-  }
-  return kPi * lamp.u.squaredNorm();
-}
-
 /// Root of the mean area of a mesh's triangles as pixels at its mean distance, face on.
 float triangle_size(const MotionMesh& mesh, const CameraFrame& camera, int width) {
   const std::vector<Vec3f>& positions = mesh.times.back().positions;
@@ -107,43 +97,56 @@ float triangle_size(const MotionMesh& mesh, const CameraFrame& camera, int width
   return static_cast<float>(std::sqrt(area / count) * pixels_per_meter);
 }
 
-/// More lights than the shader has room for: the first ones, which a shot lists by importance.
-int lamps_of(const Scene& scene) {
-  return std::min(static_cast<int>(scene.area_lights.size()), kMaxPreviewLamps);
-}
-int suns_of(const Scene& scene) {
-  return std::min(static_cast<int>(scene.suns.size()), kMaxPreviewSuns);
-}
-
-/// The sum of what the lights send, for the shaders.
-std::string lights_text(const Scene& scene, const std::vector<ShadowView>& shadows) {
-  std::string text = "vec3(0.0)";
-  const auto add = [&](bool is_sun, int light) {
-    int layer = -1;
-    for (std::size_t k = 0; k < shadows.size(); ++k)
-      if (shadows[k].is_sun == is_sun && shadows[k].light == light) layer = static_cast<int>(k);
-    text += fmt::format(" + {}({}, {}, skin)", is_sun ? "from_sun" : "from_lamp", light, layer);
-  };
-  for (int k = 0; k < lamps_of(scene); ++k) add(false, k);
-  for (int k = 0; k < suns_of(scene); ++k) add(true, k);
-  return text;
+/// Far bodies first: what is nearer is seen through over them. Distances are those of the middles of boxes.
+std::vector<std::size_t> from_far_to_near(std::vector<std::size_t> bodies, const std::vector<MotionMesh>& meshes,
+                                          const Vec3f& eye) {
+  std::vector<float> distances(meshes.size());
+  for (const std::size_t b : bodies) {
+    Eigen::AlignedBox3f box;
+    for (const Vec3f& p : meshes[b].times.back().positions) box.extend(p);
+    distances[b] = box.isEmpty() ? 0 : (box.center() - eye).norm();
+  }
+  std::stable_sort(bodies.begin(), bodies.end(),
+                   [&](std::size_t a, std::size_t b) { return distances[a] > distances[b]; });
+  return bodies;
 }
 
-/// The first lines of a fragment shader.
-std::string head(ViewTransform view) {
-  return fmt::format("#version 330 core\n#define VIEW {}\n", static_cast<int>(view));
+/// The camera sees no surroundings, and of the ground only the shadow on it.
+bool catches_shadows(const Scene& scene) {
+  return scene.ground && scene.ground->shadow_catcher;
+}
+
+/// Before nothing, what is see-through shows the surroundings, as the path tracer has it.
+bool shows_behind(const Scene& scene, const MotionMesh& mesh) {
+  return is_see_through(mesh.appearance) && !catches_shadows(scene);
+}
+
+/// What is drawn beside the bodies.
+struct Surroundings {
+  const SurfaceView& view;
+  const MotionMesh& ground;  ///< empty if there is none
+  PixelRect shadowed;        ///< where shadows may fall on it
+};
+
+/// The part of a picture that has edges: bodies and marks, or all of it where the end of a backdrop is seen. A plane
+/// fades before it ends.
+PixelRect fine_region(const Scene& scene, const MotionMesh& ground, const std::vector<OverlayVertex>& marks,
+                      const Eigen::Matrix4f& clip_from_world, const PixelRect& whole) {
+  constexpr int kMargin = 2;  // pixels
+  const bool ends = scene.ground && scene.ground->style == GroundStyle::Sweep;
+  if (ends && may_see_rim(ground, clip_from_world)) return whole;
+  SeenRegion region(whole.width(), whole.height());
+  add_bodies(region, scene.meshes, clip_from_world);
+  for (const OverlayVertex& vertex : marks) region.add(vertex.clip);
+  return region.rect(kMargin);
+}
+
+void draw_only_in(const PixelRect& rect) {
+  glScissor(rect.left, rect.bottom, std::max(0, rect.width()), std::max(0, rect.height()));
 }
 
 class EglPreview : public Preview {
  public:
-  EglPreview() {
-    context_.make_current();
-    plain_ = std::make_unique<GlProgram>(kPlainVertexShader, kPlainFragmentShader);
-    overlay_ = std::make_unique<GlProgram>(kOverlayVertexShader, kOverlayFragmentShader);
-    glGenVertexArrays(1, &no_array_);
-    shadows_ = std::make_unique<ShadowLayers>(kMaxPreviewShadows);
-    marks_ = std::make_unique<GpuMarks>();
-  }
   using Preview::draw;
   DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure,
                     const PreviewStyle& style) override;
@@ -154,151 +157,111 @@ class EglPreview : public Preview {
   }
 
  private:
-  const GlProgram& program(const std::string& vertex, const std::string& fragment);
-  const GlProgram& surface_program(const Scene& scene, const Ground* ground, ViewTransform view,
-                                   const std::vector<ShadowView>& shadows, bool at_vertices);
   void upload(const Scene& scene, const MotionMesh& ground);
-  void draw_shadows(const std::vector<ShadowView>& views) const;
-  void set_common(const GlProgram& program, const Environment& gradient, float exposure) const;
-  void set_lights(const GlProgram& surface, const Scene& scene) const;
-  void set_shadows(const GlProgram& surface, const std::vector<ShadowView>& views) const;
-  void set_ground(const GlProgram& surface, const Ground& ground, const Camera& camera) const;
-  void set_appearance(const GlProgram& surface, const MotionMesh& mesh) const;
-  void draw_background(const GlProgram& background, const CameraFrame& camera) const;
-  void draw_edges(const Eigen::Matrix4f& clip_from_world) const;
-  void draw_marks(const std::vector<OverlayVertex>& triangles) const;
+  void draw_shadows(const std::vector<ShadowView>& views);
+  void draw_bodies(const Scene& scene, const CameraFrame& camera, int width, SurfacePrograms& programs) const;
+  void draw_glass(const Scene& scene, const CameraFrame& camera, int width, SurfacePrograms& programs,
+                  const SurfaceView& view);
+  void draw_surroundings(const Scene& scene, const CameraFrame& camera, const Surroundings& around,
+                         const PixelRect& part, SurfacePrograms& programs);
+  void draw_background(const SurfaceView& view, const CameraFrame& camera);
+  void draw_edges(const Eigen::Matrix4f& clip_from_world);
+  void draw_marks(const std::vector<OverlayVertex>& triangles);
+  const GlProgram& plain() { return programs_.of(kPlainVertexShader, kPlainFragmentShader); }
 
   EglContext context_;
-  std::map<std::string, GlProgram> programs_;  ///< by the text of their shaders
-  std::unique_ptr<GlProgram> plain_, overlay_;
-  std::unique_ptr<ShadowLayers> shadows_;
-  std::unique_ptr<GpuMarks> marks_;
-  std::unique_ptr<Canvas> canvas_;  ///< of the last picture
-  std::deque<GpuMesh> bodies_;      ///< of the last scene
+  GlPrograms programs_;
+  std::unique_ptr<ShadowLayers> shadows_;  ///< made when there is a shadow
+  std::unique_ptr<GpuMarks> marks_;        ///< made when there is a mark
+  std::unique_ptr<Canvas> canvas_;         ///< of the last picture
+  std::deque<GpuMesh> bodies_;             ///< of the last scene
   std::optional<GpuMesh> ground_;
+  GpuTextures textures_;
   GLuint no_array_ = 0;  ///< OpenGL draws nothing without one, even where no vertex has an attribute
 };
-
-/// Made when it is first asked for.
-const GlProgram& EglPreview::program(const std::string& vertex, const std::string& fragment) {
-  return programs_.try_emplace(vertex + fragment, vertex, fragment).first->second;
-}
-
-/// ground: null for bodies.
-const GlProgram& EglPreview::surface_program(const Scene& scene, const Ground* ground, ViewTransform view,
-                                             const std::vector<ShadowView>& shadows, bool at_vertices) {
-  const bool checker = ground != nullptr && ground->checker > 0;
-  const std::string begin =
-      head(view) + fmt::format(
-                       "#define GROUND {}\n#define CHECKER {}\n#define SHADOWS {}\n#define LIGHTS(skin) {}\n"
-                       "#define AT_VERTICES {}\n#define SHADOW_BLUR {}\n",
-                       ground != nullptr ? 1 : 0, checker ? 1 : 0, shadows.size(), lights_text(scene, shadows),
-                       at_vertices ? 1 : 0, at_vertices ? "5.0" : "1.0");
-  const std::string functions = std::string(kEnvironmentFunctions) + kDisplayFunctions + kSurfaceFunctions;
-  if (at_vertices)
-    return program(begin + kSurfaceAttributes + kVertexLitInputs + functions + kVertexLitMain,
-                   kVertexLitFragmentShader);
-  return program(begin + kSurfaceAttributes + kPixelLitVertexShader,
-                 begin + kPixelLitInputs + functions + kPixelLitMain);
-}
 
 void EglPreview::upload(const Scene& scene, const MotionMesh& ground) {
   while (bodies_.size() > scene.meshes.size()) bodies_.pop_back();
   while (bodies_.size() < scene.meshes.size()) bodies_.emplace_back();
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    bodies_[b].upload(scene.meshes[b], vertex_base_colors(scene.meshes[b]));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].upload(scene.meshes[b]);
   if (!scene.ground) return;
   if (!ground_) ground_.emplace();
-  ground_->upload(ground, {});
+  ground_->upload(ground);
 }
 
-void EglPreview::draw_shadows(const std::vector<ShadowView>& views) const {
-  plain_->use();
+void EglPreview::draw_shadows(const std::vector<ShadowView>& views) {
+  if (views.empty()) return;
+  if (!shadows_) shadows_ = std::make_unique<ShadowLayers>(kMaxPreviewShadows);
+  const GlProgram& depths = plain();
+  depths.use();
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 4);
   for (std::size_t k = 0; k < views.size(); ++k) {
     shadows_->bind(static_cast<int>(k));
-    glUniformMatrix4fv(plain_->at("clip_from_world"), 1, GL_FALSE, views[k].clip_from_world.data());
-    for (const GpuMesh& body : bodies_) body.draw();
+    glUniformMatrix4fv(depths.at("clip_from_world"), 1, GL_FALSE, views[k].clip_from_world.data());
+    for (const GpuMesh& body : bodies_) body.draw_outside();
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void EglPreview::set_common(const GlProgram& program, const Environment& gradient, float exposure) const {
-  program.use();
-  program.set("zenith", Vec3f(gradient.strength * gradient.zenith));
-  program.set("horizon", Vec3f(gradient.strength * gradient.horizon));
-  program.set("nadir", Vec3f(gradient.strength * gradient.nadir));
-  program.set("exposure_scale", std::exp2(exposure));
+bool lit_at_vertices(const MotionMesh& mesh, const CameraFrame& camera, int width) {
+  return may_be_lit_at_vertices(mesh) && triangle_size(mesh, camera, width) < kVertexLitSize;
 }
 
-void EglPreview::set_lights(const GlProgram& surface, const Scene& scene) const {
-  for (int k = 0; k < lamps_of(scene); ++k) {
-    const AreaLight& lamp = scene.area_lights[static_cast<std::size_t>(k)];
-    const bool sphere = lamp.shape == LampShape::Sphere;
-    surface.set("lamp_center", k, lamp.center);
-    surface.set("lamp_normal", k, sphere ? Vec3f(Vec3f::Zero()) : Vec3f(lamp.u.cross(lamp.v).normalized()));
-    surface.set("lamp_radiance", k, lamp.radiance);
-    surface.set("lamp_area", k, seen_area(lamp));
-  }
-  for (int k = 0; k < suns_of(scene); ++k) {
-    const SunLight& sun = scene.suns[static_cast<std::size_t>(k)];
-    surface.set("sun_towards", k, Vec3f(-sun.direction.normalized()));
-    surface.set("sun_irradiance", k, sun.irradiance);
+void EglPreview::draw_bodies(const Scene& scene, const CameraFrame& camera, int width,
+                             SurfacePrograms& programs) const {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const MotionMesh& mesh = scene.meshes[b];
+    if (shows_behind(scene, mesh)) continue;
+    programs.use_for_body(mesh, !bodies_[b].has_normals(), lit_at_vertices(mesh, camera, width), false);
+    bodies_[b].draw();
   }
 }
 
-void EglPreview::set_shadows(const GlProgram& surface, const std::vector<ShadowView>& views) const {
-  surface.set("shadow_share", 1.0f / kShadowSize);
-  for (std::size_t layer = 0; layer < views.size(); ++layer) {
-    const ShadowView& view = views[layer];
-    const int k = static_cast<int>(layer);
-    surface.set("shadow_texel", k, view.texel);
-    glUniformMatrix4fv(surface.at(fmt::format("shadow_from_world[{}]", k).c_str()), 1, GL_FALSE,
-                       view.clip_from_world.data());
+/// Of each body the nearest surface only, over what is there: depths first.
+void EglPreview::draw_glass(const Scene& scene, const CameraFrame& camera, int width, SurfacePrograms& programs,
+                            const SurfaceView& view) {
+  std::vector<std::size_t> glass;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (shows_behind(scene, scene.meshes[b])) glass.push_back(b);
+  for (const std::size_t b : from_far_to_near(std::move(glass), scene.meshes, view.eye)) {
+    const MotionMesh& mesh = scene.meshes[b];
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    plain().use();
+    glUniformMatrix4fv(plain().at("clip_from_world"), 1, GL_FALSE, view.clip_from_world.data());
+    bodies_[b].draw();
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthFunc(GL_LEQUAL);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_SRC1_COLOR);
+    programs.use_for_body(mesh, !bodies_[b].has_normals(), lit_at_vertices(mesh, camera, width), true);
+    bodies_[b].draw();
+    glDisable(GL_BLEND);
+    glDepthFunc(GL_LESS);
   }
 }
 
-void EglPreview::set_ground(const GlProgram& surface, const Ground& ground, const Camera& camera) const {
-  const GroundPattern pattern(ground, camera);
-  const bool plane = ground.style == GroundStyle::Plane;
-  surface.set("upright_ground", plane ? 1 : 0);
-  surface.set("checker", ground.checker);
-  surface.set("checker_color", ground.checker_color);
-  surface.set("ground_height", ground.height);
-  surface.set("sweep", ground.sweep);
-  surface.set("across", pattern.across());
-  surface.set("along", pattern.along());
-  // The plane's edge fades into the sky; a backdrop fills the picture.
-  surface.set("fade_start", plane ? 0.35f * ground.size : 1e30f);
-  surface.set("fade_end", plane ? 0.5f * ground.size : 2e30f);
-}
-
-void EglPreview::draw_background(const GlProgram& background, const CameraFrame& camera) const {
+void EglPreview::draw_background(const SurfaceView& view, const CameraFrame& camera) {
+  const GlProgram& background =
+      programs_.of(kBackgroundVertexShader,
+                   shader_head(view.view) + kEnvironmentFunctions + kDisplayFunctions + kBackgroundFragmentShader);
+  set_surroundings(background, view);
   background.set("forward", camera.forward);
   background.set("right", Vec3f(camera.half_width * camera.right));
   background.set("up", Vec3f(camera.half_height * camera.up));
+  if (no_array_ == 0) glGenVertexArrays(1, &no_array_);
   glBindVertexArray(no_array_);
   glDepthFunc(GL_LEQUAL);  // it lies at the far end
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glDepthFunc(GL_LESS);
 }
 
-void EglPreview::set_appearance(const GlProgram& surface, const MotionMesh& mesh) const {
-  const Appearance& look = mesh.appearance;
-  surface.set("emission", look.emission);
-  surface.set("roughness", look.roughness);
-  surface.set("metallic", look.metallic);
-  surface.set("specular", look.specular);
-  surface.set("transmission", look.transmission);
-  surface.set("flat_normals", mesh.times.back().normals.empty() ? 1 : 0);
-}
-
-void EglPreview::draw_edges(const Eigen::Matrix4f& clip_from_world) const {
-  plain_->use();
-  glUniformMatrix4fv(plain_->at("clip_from_world"), 1, GL_FALSE, clip_from_world.data());
-  glUniform4f(plain_->at("tint"), 0, 0, 0, 0.2f);
+void EglPreview::draw_edges(const Eigen::Matrix4f& clip_from_world) {
+  const GlProgram& edges = plain();
+  edges.use();
+  glUniformMatrix4fv(edges.at("clip_from_world"), 1, GL_FALSE, clip_from_world.data());
+  glUniform4f(edges.at("tint"), 0, 0, 0, 0.2f);
   glEnable(GL_BLEND);
   glEnable(GL_POLYGON_OFFSET_LINE);
   glPolygonOffset(-1, -1);  // the lines lie in the surface
@@ -312,70 +275,85 @@ void EglPreview::draw_edges(const Eigen::Matrix4f& clip_from_world) const {
 }
 
 /// What is behind bodies faintly, then what is seen in full.
-void EglPreview::draw_marks(const std::vector<OverlayVertex>& triangles) const {
+void EglPreview::draw_marks(const std::vector<OverlayVertex>& triangles) {
   if (triangles.empty()) return;
-  overlay_->use();
+  if (!marks_) marks_ = std::make_unique<GpuMarks>();
+  const GlProgram& overlay = programs_.of(kOverlayVertexShader, kOverlayFragmentShader);
+  overlay.use();
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glDepthFunc(GL_GREATER);
-  overlay_->set("opacity", 0.25f);
+  overlay.set("opacity", 0.25f);
   marks_->draw(triangles);
   glDepthFunc(GL_LEQUAL);
-  overlay_->set("opacity", 1.0f);
+  overlay.set("opacity", 1.0f);
   marks_->draw(triangles);
   glDepthFunc(GL_LESS);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
 }
 
+/// Ground and background in a part of the picture.
+void EglPreview::draw_surroundings(const Scene& scene, const CameraFrame& camera, const Surroundings& around,
+                                   const PixelRect& part, SurfacePrograms& programs) {
+  const auto draw_ground = [&](const std::vector<PixelRect>& parts, bool in_shadow) {
+    if (parts.empty()) return;
+    programs.use_for_ground(*scene.ground, around.ground, in_shadow);
+    for (const PixelRect& rect : parts) {
+      draw_only_in(rect);
+      ground_->draw();
+    }
+  };
+  if (scene.ground) {
+    const PixelRect shadowed = common(part, around.shadowed);
+    draw_ground(shadowed.empty() ? std::vector<PixelRect>{} : std::vector<PixelRect>{shadowed}, true);
+    draw_ground(without(part, around.shadowed), false);
+  }
+  draw_only_in(part);
+  if (!catches_shadows(scene)) draw_background(around.view, camera);
+}
+
 DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTransform view, float exposure,
                               const PreviewStyle& style) {
   const CameraFrame camera = camera_frame(scene.camera, width, height);
-  const MotionMesh ground = scene.ground ? ground_mesh(*scene.ground, scene.camera) : MotionMesh{};
-  const std::vector<ShadowView> shadows =
-      style.fast ? std::vector<ShadowView>{} : shadow_views(scene, kMaxPreviewShadows, kShadowSize);
+  const MotionMesh ground = scene.ground ? ground_mesh(*scene.ground, scene.camera, 1) : MotionMesh{};
+  const float far = farthest(scene.meshes, ground, style.marks, camera);
+  const Eigen::Matrix4f clip = clip_from_world(camera, 1e-3f * far, far);
+  SurfaceView seen{view, exposure, as_gradient(scene.environment), {}, clip, camera.position};
+  if (!style.fast) seen.shadows = shadow_views(scene, kMaxPreviewShadows, kShadowSize);
+  const std::vector<OverlayVertex> marks = overlay_triangles(style.marks, clip, camera.position, width, height);
+  const PixelRect whole{0, 0, width, height};
+  const PixelRect fine = style.fast ? whole : fine_region(scene, ground, marks, clip, whole);
+  const Surroundings around{seen, ground,
+                            scene.ground ? shadow_region(ground, seen.shadows, clip, width, height) : PixelRect{}};
+  const GLbitfield cleared = GL_DEPTH_BUFFER_BIT | (catches_shadows(scene) ? GL_COLOR_BUFFER_BIT : 0);
   const int samples = style.fast ? 0 : kAntiAliasing;
 
   context_.make_current();
   if (!canvas_ || !canvas_->is(width, height, samples)) canvas_ = std::make_unique<Canvas>(width, height, samples);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   upload(scene, ground);
-  draw_shadows(shadows);
-  canvas_->bind();
-  glClear(GL_DEPTH_BUFFER_BIT);
-  const Environment gradient = as_gradient(scene.environment);
-  const float far = farthest(scene.meshes, ground, style.marks, camera);
-  const Eigen::Matrix4f clip = clip_from_world(camera, 1e-3f * far, far);
-  const auto surface = [&](const Ground* of, bool at_vertices) -> const GlProgram& {
-    const GlProgram& program = surface_program(scene, of, view, shadows, at_vertices);
-    set_common(program, gradient, exposure);
-    set_lights(program, scene);
-    set_shadows(program, shadows);
-    glUniformMatrix4fv(program.at("clip_from_world"), 1, GL_FALSE, clip.data());
-    program.set("eye", camera.position);
-    return program;
-  };
+  draw_shadows(seen.shadows);
+  SurfacePrograms programs(scene, seen, programs_, textures_);
   glEnable(GL_DEPTH_TEST);
-  // From near to far: what is hidden costs nothing.
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const float pixels = triangle_size(scene.meshes[b], camera, width);
-    const GlProgram& skin = surface(nullptr, pixels < kVertexLitSize && !scene.meshes[b].times.back().normals.empty());
-    set_appearance(skin, scene.meshes[b]);
-    bodies_[b].draw();
+  glEnable(GL_SCISSOR_TEST);
+  if (samples > 0) canvas_->bind_coarse();
+  for (const PixelRect& part : without(whole, fine)) {
+    draw_only_in(part);
+    glClear(cleared);
+    draw_surroundings(scene, camera, around, part, programs);
   }
-  if (scene.ground) {
-    const GlProgram& floor = surface(&*scene.ground, false);
-    set_ground(floor, *scene.ground, scene.camera);
-    set_appearance(floor, ground);
-    ground_->draw();
-  }
-  const GlProgram& background = program(
-      kBackgroundVertexShader, head(view) + kEnvironmentFunctions + kDisplayFunctions + kBackgroundFragmentShader);
-  set_common(background, gradient, exposure);
-  draw_background(background, camera);
+  canvas_->bind_fine();
+  draw_only_in(fine);
+  glClear(cleared);
+  // From near to far: what is hidden costs nothing. Then what is seen through, from far to near.
+  draw_bodies(scene, camera, width, programs);
+  draw_surroundings(scene, camera, around, fine, programs);
+  draw_glass(scene, camera, width, programs, seen);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   if (style.wireframe) draw_edges(clip);
-  draw_marks(overlay_triangles(style.marks, clip, camera.position, width, height));
-  DisplayImage image = canvas_->read();
+  draw_marks(marks);
+  glDisable(GL_SCISSOR_TEST);
+  DisplayImage image = canvas_->read(catches_shadows(scene), fine);
   if (const GLenum failure = glGetError(); failure != GL_NO_ERROR)
     throw unusable(fmt::format("OpenGL error {:#x} while drawing {} x {} pixels", failure, width, height));
   return image;

@@ -1,26 +1,13 @@
-#include "render/preview/preview.h"
-
 #include <cstdlib>
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "render/scene/camera_frame.h"
 #include "render/scene/color_map.h"
+#include "tests/render/preview/drawn_preview.h"
 #include "tests/render/test_scenes.h"
 
 namespace softreel {
 namespace {
-
-/// Null, with the reason printed, where this machine cannot draw.
-std::unique_ptr<Preview> egl_preview_or_null(std::string& reason) {
-  try {
-    return make_egl_preview();
-  } catch (const Error& error) {
-    reason = error.what();
-    return nullptr;
-  }
-}
 
 /// A glowing ball before a black sky, off the centre, seen at an angle.
 Scene glowing_ball() {
@@ -100,22 +87,6 @@ TEST(EglPreview, DrawsTheSamePictureTwiceAndNamesItself) {
   const auto draw = [&] { return preview->draw(scene, 33, 17, ViewTransform::Filmic, 0).pixels; };
   EXPECT_EQ(draw(), draw());
   EXPECT_NE(preview->description().find("EGL 1."), std::string::npos) << preview->description();
-}
-
-/// Red, green and blue of a pixel.
-Vec3f pixel_at(const DisplayImage& image, int x, int y) {
-  const std::size_t at =
-      3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
-  return Vec3f(image.pixels[at], image.pixels[at + 1], image.pixels[at + 2]);
-}
-
-/// Where the camera sees a point, pixels from the upper left corner; from the camera's axes, not from a matrix.
-Vec2f place_of(const Vec3f& point, const Camera& camera, int width, int height) {
-  const CameraFrame frame = camera_frame(camera, width, height);
-  const Vec3f to = point - frame.position;
-  const float depth = to.dot(frame.forward);
-  const float x = to.dot(frame.right) / (depth * frame.half_width), y = to.dot(frame.up) / (depth * frame.half_height);
-  return {0.5f * static_cast<float>(width) * (1 + x), 0.5f * static_cast<float>(height) * (1 - y)};
 }
 
 TEST(EglPreview, FastAndShadowedPicturesHaveTheSameSilhouette) {
