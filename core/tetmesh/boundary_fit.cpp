@@ -52,7 +52,7 @@ class BoundaryFit::Fit {
         wanted_(std::pow(params.tolerance * stuffed.mesh.lattice.spacing, 2)) {}
 
   void run() {
-    const std::vector<std::array<Vec3, 3>> corners = face_corners();
+    const std::vector<std::array<Vec3, 3>> corners = stars_.face_corners(mesh_);
     sample_faces_.assign(samples_.size(), -1);
     if (memory_ != nullptr) memory_->find_sample_faces(corners, sample_faces_);
     probes_.resize(stars_.nodes.size() + stars_.edges.size() + stars_.faces.size());
@@ -120,13 +120,6 @@ class BoundaryFit::Fit {
     for (const Index e : stars_.edges_of.of(b))
       squared = std::max(squared, (position(stars_.edges[at(e)][0]) - position(stars_.edges[at(e)][1])).squaredNorm());
     return std::sqrt(squared);
-  }
-
-  std::vector<std::array<Vec3, 3>> face_corners() const {
-    std::vector<std::array<Vec3, 3>> corners;
-    for (const auto& [nodes, element] : stars_.faces)
-      corners.push_back({position(nodes[0]), position(nodes[1]), position(nodes[2])});
-    return corners;
   }
 
   /// Moves every node to the nearest point of the surface, as far as its star allows.

@@ -1,6 +1,7 @@
 #include "core/tetmesh/boundary_stars.h"
 
 #include <algorithm>
+#include <ranges>
 
 #include "core/tetmesh/boundary_mending.h"
 
@@ -69,6 +70,14 @@ CosineRange BoundaryStars::cosines(const TetMesh& mesh, std::size_t b) const {
     range.add(x);
   }
   return range;
+}
+
+std::vector<std::array<Vec3, 3>> BoundaryStars::face_corners(const TetMesh& mesh) const {
+  std::vector<std::array<Vec3, 3>> corners;
+  corners.reserve(faces.size());
+  for (const auto& [i, j, k] : faces | std::views::transform(&BoundaryFace::nodes))
+    corners.push_back({mesh.nodes[at(i)], mesh.nodes[at(j)], mesh.nodes[at(k)]});
+  return corners;
 }
 
 }  // namespace softreel

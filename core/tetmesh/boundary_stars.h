@@ -48,6 +48,9 @@ struct BoundaryStars {
   /// Of the elements at boundary node `b`.
   CosineRange cosines(const TetMesh& mesh, std::size_t b) const;
 
+  /// Where the nodes of each face are.
+  std::vector<std::array<Vec3, 3>> face_corners(const TetMesh& mesh) const;
+
   std::vector<BoundaryFace> faces;                 ///< nodes of each ascending
   std::vector<std::array<Index, 2>> edges;         ///< of the boundary, nodes ascending
   std::vector<Index> nodes, numbers;               ///< nodes on the boundary; per mesh node its place there, -1 inside

@@ -46,5 +46,35 @@ TEST(SurfaceSamples, AreNowhereFurtherApartThanAskedFor) {
   }
 }
 
+TEST(SurfaceSamples, OnceAreTheSamePlacesEachOnce) {
+  const auto less = [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  };
+  // All edges of a face are of equal length: neighbours have as many steps.
+  SurfaceMesh tetrahedron;
+  tetrahedron.positions = {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
+  tetrahedron.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  // Steps of 2 / 2^k: the places have no round-off.
+  for (const double step : {3.0, 1.5, 0.75, 0.36}) {
+    const SurfaceSamples each(tetrahedron, {0, 1, 2, 3}, step),
+        once(tetrahedron, {0, 1, 2, 3}, step, SurfaceSamples::kOnce);
+    std::vector<Vec3> places, single;
+    for (std::size_t s = 0; s < each.size(); ++s) places.push_back(each[s]);
+    for (std::size_t s = 0; s < once.size(); ++s) single.push_back(once[s]);
+    std::sort(places.begin(), places.end(), less);
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    std::sort(single.begin(), single.end(), less);
+    EXPECT_EQ(single, places) << step;
+  }
+}
+
+TEST(SurfaceSamples, ThinnedAreEveryNthOfThem) {
+  const SurfaceMesh box = test::make_box(Vec3(0.5, 0.3, 0.2), 2, Vec3(1, 2, 3));
+  const SurfaceSamples all(box, TriangleTree(box.positions, box.triangles).order(), 0.1);
+  const SurfaceSamples some = all.thinned(3);
+  ASSERT_EQ(some.size(), (all.size() + 2) / 3);
+  for (std::size_t s = 0; s < some.size(); ++s) EXPECT_EQ(some[s], all[3 * s]);
+}
+
 }  // namespace
 }  // namespace softreel
