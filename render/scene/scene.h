@@ -15,7 +15,7 @@
 
 namespace softreel {
 
-/// Lines along the edges of a mesh's triangles, for pictures of meshes; the path tracer draws them. They are as wide as
+/// Lines along the edges of a mesh's triangles, for pictures of meshes: traced ones, and previews. They are as wide as
 /// seen by the camera, not in metres, and lie in the surface: light and shadow fall on them.
 struct EdgeLines {
   float width = 1;  ///< pixels, half of it on either side of the edge

@@ -21,15 +21,15 @@ TEST(PathTracer, WhiteFurnaceIsUniform) {
       white.roughness = roughness;
       scene.meshes = {sphere(Vec3f(0, 0, 0), 1, white)};
       scene.camera = camera_above(5, 2.5f);
-      const Image image = rendered(scene, small_params(24, 64));
+      const Image image = rendered(scene, small_params(24, 128));
       EXPECT_NEAR(mean_of(image.channels[0]), 0.5, 0.004) << metallic << ' ' << roughness;
       double squares = 0;
       for (const float value : image.channels[0].pixels) {
-        EXPECT_NEAR(value, 0.5f, 0.1f) << "shiny metal is noisy at its silhouette";
+        EXPECT_NEAR(value, 0.5f, 0.06f) << metallic << ' ' << roughness;
         squares += std::pow(static_cast<double>(value) - 0.5, 2);
       }
       const double pixels = static_cast<double>(image.channels[0].pixels.size());
-      EXPECT_LT(std::sqrt(squares / pixels), 0.008) << metallic << ' ' << roughness;
+      EXPECT_LT(std::sqrt(squares / pixels), 0.006) << metallic << ' ' << roughness;
     }
 }
 

@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "core/base/error.h"
 #include "render/preview/preview.h"
 #include "render/scene/camera_frame.h"
@@ -41,5 +43,22 @@ inline Vec3f pixel_of(const DisplayImage& image, const Camera& camera, const Vec
   const Vec2f at = place_of(point, camera, image.width, image.height);
   return pixel_at(image, static_cast<int>(at.x()), static_cast<int>(at.y()));
 }
+
+/// Small square pictures, drawn as they are; skips where this machine cannot draw.
+class DrawnPreview : public ::testing::Test {
+ protected:
+  static constexpr int kSize = 96;  ///< pixels
+
+  void SetUp() override {
+    std::string reason;
+    preview_ = egl_preview_or_null(reason);
+    if (preview_ == nullptr) GTEST_SKIP() << reason;
+  }
+  DisplayImage draw(const Scene& scene) { return preview_->draw(scene, kSize, kSize, ViewTransform::Raw, 0); }
+  Vec3f seen(const Scene& scene, const Vec3f& point) { return pixel_of(draw(scene), scene.camera, point); }
+
+ private:
+  std::unique_ptr<Preview> preview_;
+};
 
 }  // namespace softreel

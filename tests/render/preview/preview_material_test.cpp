@@ -10,19 +10,7 @@
 namespace softreel {
 namespace {
 
-constexpr int kSize = 96;
-
-class PreviewMaterial : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::string reason;
-    preview_ = egl_preview_or_null(reason);
-    if (preview_ == nullptr) GTEST_SKIP() << reason;
-  }
-  DisplayImage draw(const Scene& scene) { return preview_->draw(scene, kSize, kSize, ViewTransform::Raw, 0); }
-  Vec3f seen(const Scene& scene, const Vec3f& point) { return pixel_of(draw(scene), scene.camera, point); }
-  std::unique_ptr<Preview> preview_;
-};
+class PreviewMaterial : public DrawnPreview {};
 
 Appearance glowing(const Vec3f& color) {
   Appearance look = matte(0);

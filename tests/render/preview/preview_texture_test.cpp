@@ -10,19 +10,8 @@
 namespace softreel {
 namespace {
 
-constexpr int kSize = 96;
-
-class PreviewTexture : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::string reason;
-    preview_ = egl_preview_or_null(reason);
-    if (preview_ == nullptr) GTEST_SKIP() << reason;
-  }
-  /// In a white sky a matt surface shows its albedo.
-  DisplayImage draw(const Scene& scene) { return preview_->draw(scene, kSize, kSize, ViewTransform::Raw, 0); }
-  std::unique_ptr<Preview> preview_;
-};
+/// In a white sky a matt surface shows its albedo.
+class PreviewTexture : public DrawnPreview {};
 
 /// A square of edge 2 in rows x rows quads, its texture coordinates 0 to 1 along x and against z.
 MotionMesh tiled_square(int rows, const TextureMaps& maps) {
