@@ -13,7 +13,7 @@ namespace {
 
 /// A unit ball's sphere without what lies below y = `height`.
 SurfaceMesh holed_sphere(double height) {
-  SurfaceMesh surface = test::make_sphere(1, 24, Vec3::Zero());
+  SurfaceMesh surface = test::make_sphere(1, 32, Vec3::Zero());
   std::erase_if(surface.triangles, [&](const Triangle& triangle) {
     return std::ranges::all_of(triangle,
                                [&](Index v) { return surface.positions[static_cast<std::size_t>(v)][1] < height; });
@@ -53,14 +53,14 @@ TEST(HoleCaps, AreWhereTheWindingNumberPassesAHalfOffTheSurface) {
 }
 
 TEST(MeasureDeviation, OfABallWithAHoleIsThatOfTheRest) {
-  const double edge = 0.18;
+  const double edge = 0.12;
   const double closed = [&] {
-    const SurfaceMesh ball = test::make_sphere(1, 24, Vec3::Zero());
+    const SurfaceMesh ball = test::make_sphere(1, 32, Vec3::Zero());
     const SurfaceDeviation deviation = measure_deviation(ball, fill(ball, {.edge = edge}), Threads(1));
     EXPECT_EQ(deviation.cap_share, 0);
     return deviation.two_way();
   }();
-  for (const double height : {-0.85, 0.0}) {
+  for (const double height : {-0.85, -0.5, 0.0}) {
     SCOPED_TRACE(height);
     const SurfaceMesh ball = holed_sphere(height);
     const TetMesh mesh = fill(ball, {.edge = edge});
@@ -77,13 +77,13 @@ TEST(MeasureDeviation, OfABallWithAHoleIsThatOfTheRest) {
 TEST(MeasureDeviation, CountsWhatIsWrongBesideAHole) {
   // The mesh is that of a smaller ball: nearer to the hole than its cap is to the surface, and wrong all the same.
   const SurfaceMesh holed = holed_sphere(-0.85);
-  const TetMesh small = fill(test::make_sphere(0.7, 24, Vec3::Zero()), {.edge = 0.16});
+  const TetMesh small = fill(test::make_sphere(0.7, 24, Vec3::Zero()), {.edge = 0.12});
   const SurfaceDeviation deviation = measure_deviation(holed, small, Threads(1));
   EXPECT_GT(deviation.from_boundary, 0.29);
   EXPECT_GT(deviation.from_surface, 0.29);
   // A ball that the surface lacks is no cap either.
-  TetMesh more = fill(holed, {.edge = 0.16});
-  const TetMesh extra = fill(test::make_sphere(0.3, 12, Vec3(3, 0, 0)), {.edge = 0.16});
+  TetMesh more = fill(holed, {.edge = 0.12});
+  const TetMesh extra = fill(test::make_sphere(0.3, 12, Vec3(3, 0, 0)), {.edge = 0.12});
   const auto first = static_cast<Index>(more.nodes.size());
   more.nodes.insert(more.nodes.end(), extra.nodes.begin(), extra.nodes.end());
   for (const auto& [a, b, c, d] : extra.tets) more.tets.push_back({a + first, b + first, c + first, d + first});
@@ -93,8 +93,8 @@ TEST(MeasureDeviation, CountsWhatIsWrongBesideAHole) {
 TEST(FillToError, KeepsToItsBudgetBesideAHole) {
   const SurfaceMesh ball = holed_sphere(-0.85);
   std::vector<std::string> lines;
-  const TetMesh mesh = fill(ball, {.error = 0.03}, &lines);
-  EXPECT_LE(measure_deviation(ball, mesh, Threads(1)).two_way(), 0.03);
+  const TetMesh mesh = fill(ball, {.error = 0.02}, &lines);
+  EXPECT_LE(measure_deviation(ball, mesh, Threads(1)).two_way(), 0.02);
   EXPECT_TRUE(lines.empty()) << lines.front();
 }
 
