@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -23,6 +24,11 @@ using Mat3f = Eigen::Matrix3f;
 
 /// Index of a vertex, node, triangle or element. Counts that may pass 2^31 (matrix entries) are std::int64_t.
 using Index = std::int32_t;
+
+/// An index as the standard containers take it; not negative.
+inline std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
 
 using Triangle = std::array<Index, 3>;
 using Tet = std::array<Index, 4>;

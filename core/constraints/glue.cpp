@@ -13,10 +13,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 Vec3 weighted(const Tet& tet, const std::array<double, 4>& weights, std::span<const Vec3> positions) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t k = 0; k < 4; ++k) sum += weights[k] * positions[at(tet[k])];

@@ -4,14 +4,6 @@
 #include <numeric>
 
 namespace softreel {
-namespace {
-
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
-}  // namespace
-
 std::vector<Joint> find_joints(const std::vector<Glue>& glues, const std::vector<GlueBond>& bonds) {
   std::vector<Joint> joints;
   for (const GlueBond& bond : bonds)

@@ -9,10 +9,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 Index corner_of(std::span<const Triangle> triangles, Index triangle, Index node) {
   const Triangle& corners = triangles[at(triangle)];
   return 3 * triangle + static_cast<Index>(std::find(corners.begin(), corners.end(), node) - corners.begin());

@@ -8,10 +8,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 bool has(const Triangle& face, Index node) {
   return std::find(face.begin(), face.end(), node) != face.end();
 }

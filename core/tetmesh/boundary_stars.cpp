@@ -8,10 +8,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Per boundary node, the items whose nodes it is one of.
 template <typename Item, typename NodesOf>
 CompressedList list_owners(const BoundaryStars& stars, const std::vector<Item>& items, const NodesOf& nodes_of) {

@@ -11,10 +11,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// A point counts as inside if the surface goes round it more than this often (signed_distance.h).
 constexpr double kInside = 0.5;
 

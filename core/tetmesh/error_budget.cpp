@@ -79,10 +79,6 @@ constexpr double kCountTolerance = 0.05;
 /// Samples are this many budgets apart.
 constexpr double kSampleStep = 2.0;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// The error at which a smooth surface takes about so many tetrahedra.
 double guess_error(double area, double tets) {
   return std::sqrt(kTetsPerSquare * area / (kBaseShare * tets)) / kBaseEdge;

@@ -13,10 +13,6 @@ namespace {
 /// Pieces of at most this share of the elements are loose.
 constexpr double kLooseShare = 0.02;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 SurfaceMesh bare(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
   SurfaceMesh mesh;
   mesh.positions = positions;

@@ -12,10 +12,6 @@ constexpr double kTetsPerLeaf = 12.0, kTetsPerCut = 1.6;
 /// What is cut where leaves of different sizes meet, and what neighbours are halved for it later, comes on top.
 constexpr double kTransitions = 1.4;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// A place whose leaf is to be of this level.
 struct Wish {
   Vec3 point;

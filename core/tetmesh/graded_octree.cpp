@@ -9,10 +9,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 LatticeNode shifted(LatticeNode node, std::size_t axis, std::int32_t by) {
   node[axis] += by;
   return node;

@@ -12,10 +12,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Pieces of a mesh with a manifold boundary, where elements that share a node are joined through faces too.
 struct Pieces {
   std::vector<Index> tet_pieces;  // per element

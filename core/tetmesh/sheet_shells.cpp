@@ -8,10 +8,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 Vec3 area_of(const SurfaceMesh& surface, const Triangle& t) {
   const Vec3& a = surface.positions[at(t[0])];
   return (surface.positions[at(t[1])] - a).cross(surface.positions[at(t[2])] - a);

@@ -12,10 +12,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Name of the first group that holds a vertex, "" if none does.
 std::string group_of(const SurfaceMesh& surface, Index vertex) {
   for (const VertexGroup& group : surface.groups)

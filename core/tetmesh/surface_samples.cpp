@@ -10,10 +10,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Steps along the longest edge of a triangle.
 std::int32_t count_steps(const SurfaceMesh& surface, Index triangle, double step) {
   const auto& [a, b, c] = surface.triangles[at(triangle)];

@@ -21,10 +21,6 @@ constexpr double kTakenIn = -0.6, kNextToTakenIn = 0.5;
 /// Each round closes at least half of every gap.
 constexpr int kMaxRounds = 8;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// The inside nodes that stuffing keeps inside, and which of them hang together along lattice edges.
 class FirmNodes {
  public:

@@ -30,11 +30,6 @@ Vec2f mean_over_normals(float cosine, float alpha, const Part& part) {
   return sum / (kRings * kAngles);
 }
 
-/// Sampling weight G2 / G1 of a direction with cosine `cos_i`, which may be on either side.
-float shadowing_weight(const Vec3f& o, float cos_i, float alpha) {
-  return ggx_shadowing(o.z(), std::abs(cos_i), alpha) / ggx_masking(o.z(), alpha);
-}
-
 /// What a reflection returns: of reflectance 1 - (1 - c)^5, and of (1 - c)^5.
 Vec2f reflection_albedo(float cosine, float alpha, const AlbedoTable::Passed& passed) {
   return mean_over_normals(cosine, alpha, [&](const Vec3f& o, const Vec3f& h) -> Vec2f {

@@ -6,11 +6,6 @@ namespace softreel {
 
 namespace {
 
-/// Sampling weight G2 / G1 of a direction with cosine `cos_i`, which may be on either side.
-float shadowing_weight(const Vec3f& o, float cos_i, float alpha) {
-  return ggx_shadowing(o.z(), std::abs(cos_i), alpha) / ggx_masking(o.z(), alpha);
-}
-
 /// The second of two numbers falls into the share of one lobe, and its place within it is a number again. So the points
 /// of each lobe are as evenly spread as all are, where a number of its own would leave out some of them by chance.
 class LobeChoice {

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "core/base/check.h"
+#include "render/pathtrace/sampling.h"
 
 namespace softreel {
 
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
 
 EmitterBounds joined(const EmitterBounds& a, const EmitterBounds& b) {
   return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high), a.normals.joined(b.normals), a.power_by_pi + b.power_by_pi};

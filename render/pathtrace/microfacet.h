@@ -42,6 +42,11 @@ inline float ggx_shadowing(float cos_o, float cos_i, float alpha) {
   return 1 / (1 + ggx_lambda(cos_o, alpha) + ggx_lambda(cos_i, alpha));
 }
 
+/// Sampling weight G2 / G1 of a direction with cosine `cos_i`, which may be on either side.
+inline float shadowing_weight(const Vec3f& o, float cos_i, float alpha) {
+  return ggx_shadowing(o.z(), std::abs(cos_i), alpha) / ggx_masking(o.z(), alpha);
+}
+
 /// Density with which sample_visible_normal finds h as seen from o: D_o(h) = G1(o) max(0, o.h) D(h) / cos_o.
 inline float visible_normal_density(const Vec3f& o, const Vec3f& h, float alpha) {
   return ggx_masking(o.z(), alpha) * std::max(0.0f, o.dot(h)) * ggx_distribution(h.z(), alpha) / o.z();

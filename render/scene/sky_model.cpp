@@ -13,7 +13,7 @@ namespace softreel {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Our unit of radiance, kcd/m^2.
 constexpr double kUnit = 10;
@@ -47,7 +47,7 @@ Vec3 transmittance(double turbidity, double zenith_angle) {
   // Wavelengths in micrometres near the middles of red, green, blue, and ozone's absorption there, 1/cm.
   constexpr std::array<double, 3> kWavelength{0.61, 0.55, 0.465}, kOzone{0.120, 0.085, 0.010};
   constexpr double kOzoneLayer = 0.35;  // cm
-  const double degrees = zenith_angle * 180 / kPi;
+  const double degrees = zenith_angle * 180 / pi;
   const double mass = 1 / (std::cos(zenith_angle) + 0.15 * std::pow(93.885 - degrees, -1.253));
   const double haze = 0.04608 * turbidity - 0.04586;  // Angstrom's coefficient
   Vec3 share;
@@ -69,19 +69,19 @@ double SkyModel::Perez::at(double cos_zenith, double angle_to_sun) const {
 
 SkyModel::SkyModel(const Daylight& day) {
   const double t = static_cast<double>(day.turbidity), elevation = static_cast<double>(day.elevation);
-  if (!(t >= 1.7 && t <= 10) || !(elevation >= 0 && elevation <= 0.5 * kPi + 1e-6))
+  if (!(t >= 1.7 && t <= 10) || !(elevation >= 0 && elevation <= 0.5 * pi + 1e-6))
     throw input_error(
         fmt::format("A sky of turbidity {} with the sun {} degrees above the horizon is outside of the model.\n"
                     "  Accepted: 1.7 to 10; 0 to 90 degrees. Correct the sky, or use an environment image.",
-                    t, elevation * 180 / kPi));
+                    t, elevation * 180 / pi));
   perez_ = {
       Perez{0.1787 * t - 1.4630, -0.3554 * t + 0.4275, -0.0227 * t + 5.3251, 0.1206 * t - 2.5771, -0.0670 * t + 0.3703},
       Perez{-0.0193 * t - 0.2592, -0.0665 * t + 0.0008, -0.0004 * t + 0.2125, -0.0641 * t - 0.8989,
             -0.0033 * t + 0.0452},
       Perez{-0.0167 * t - 0.2608, -0.0950 * t + 0.0092, -0.0079 * t + 0.2102, -0.0441 * t - 1.6537,
             -0.0109 * t + 0.0529}};
-  const double sun_angle = std::clamp(0.5 * kPi - elevation, 0.0, 0.5 * kPi);
-  const double chi = (4.0 / 9 - t / 120) * (kPi - 2 * sun_angle);
+  const double sun_angle = std::clamp(0.5 * pi - elevation, 0.0, 0.5 * pi);
+  const double chi = (4.0 / 9 - t / 120) * (pi - 2 * sun_angle);
   zenith_[0] = (4.0453 * t - 4.9710) * std::tan(chi) - 0.2155 * t + 2.4192;
   zenith_[1] = zenith_chromaticity({{{0.00166, -0.00375, 0.00209, 0},
                                      {-0.02903, 0.06377, -0.03202, 0.00394},
@@ -103,11 +103,11 @@ SkyModel::SkyModel(const Daylight& day) {
   constexpr int kRows = 32, kColumns = 64;  // of equal shares of the cosine-weighted hemisphere
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; ++column) {
-      const double sine2 = (row + 0.5) / kRows, turn = 2 * kPi * (column + 0.5) / kColumns;
+      const double sine2 = (row + 0.5) / kRows, turn = 2 * pi * (column + 0.5) / kColumns;
       const Vec3 direction(std::sqrt(sine2) * std::sin(turn), std::sqrt(1 - sine2), std::sqrt(sine2) * std::cos(turn));
-      irradiance += above(direction.cast<float>()).cast<double>() * (kPi / (kRows * kColumns));
+      irradiance += above(direction.cast<float>()).cast<double>() * (pi / (kRows * kColumns));
     }
-  ground_ = (static_cast<double>(day.ground_albedo) / kPi * irradiance).cast<float>();
+  ground_ = (static_cast<double>(day.ground_albedo) / pi * irradiance).cast<float>();
 }
 
 Vec3f SkyModel::above(const Vec3f& direction) const {

@@ -17,7 +17,7 @@ std::string read(const fs::path& path) {
 }
 
 fs::path new_folder(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("bench_report_" + name);
+  const fs::path folder = fs::path(::testing::TempDir()) / ("bench_report_" + name);
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

@@ -20,6 +20,11 @@ TetMesh make_box(std::array<Index, 3> cubes, double h, const std::function<bool(
 /// The bar of the performance targets: 1 x 0.25 x 0.25 m, `across` cubes across.
 TetMesh make_bar(Index across);
 
+/// Where a box or bar begins: what tests pin.
+inline bool at_left_end(const Vec3& x) {
+  return x[0] < 1e-9;
+}
+
 struct ElasticParams {
   double youngs_modulus = 1e6;  ///< Pa
   double poisson_ratio = 0.4;

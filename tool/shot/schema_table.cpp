@@ -11,12 +11,6 @@ std::string with_unit(const FieldText& text) {
   return text.unit.empty() ? text.accepted : text.accepted + " (" + text.unit + ")";
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
-}
-
 }  // namespace
 
 Place Place::item(std::size_t index) const {
@@ -47,7 +41,8 @@ Error unknown_field_error(const Place& table, const TomlEntry& entry, const std:
   const std::string next =
       nearest.empty() ? "Remove it, or use one of these." : fmt::format("Did you mean '{}'?", nearest);
   return input_error(fmt::format("{}: {} = {} is wrong because there is no field of this name.\n  Accepted: {}. {}",
-                                 to_string(entry.key_origin), path, to_short_text(entry.value), joined(known), next));
+                                 to_string(entry.key_origin), path, to_short_text(entry.value),
+                                 fmt::format("{}", fmt::join(known, ", ")), next));
 }
 
 std::string suggestion(const std::string& unknown, const std::vector<std::string>& known) {

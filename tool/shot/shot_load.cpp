@@ -14,7 +14,7 @@ namespace {
 /// More than this says nothing new.
 constexpr std::size_t kShownProblems = 20;
 
-std::string joined(const std::vector<std::string>& problems) {
+std::string first_problems(const std::vector<std::string>& problems) {
   std::string out;
   for (std::size_t i = 0; i < problems.size() && i < kShownProblems; ++i) out += (i == 0 ? "" : "\n") + problems[i];
   if (problems.size() > kShownProblems)
@@ -38,7 +38,7 @@ Shot parse_shot(const std::string& path, const TomlValue& document) {
   } catch (const Error& error) {
     problems.emplace_back(error.what());
   }
-  if (!problems.empty()) throw input_error(joined(problems));
+  if (!problems.empty()) throw input_error(first_problems(problems));
   return shot;
 }
 

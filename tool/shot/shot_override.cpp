@@ -80,12 +80,6 @@ std::vector<std::string> keys_of(const TomlValue* table) {
   return keys;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
-}
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -101,13 +95,15 @@ void name_the_body(const TomlValue& document, const Override& one, std::vector<S
     return;
   }
   if (contains(fields, steps[1].key))
-    throw override_error(one, fmt::format("the shot has {} bodies", bodies.size()), joined(bodies),
+    throw override_error(one, fmt::format("the shot has {} bodies", bodies.size()),
+                         fmt::format("{}", fmt::join(bodies, ", ")),
                          fmt::format("Name the body: body.{}.{}", key_text(bodies.front()), steps[1].key));
   if (contains(bodies, steps[1].key)) return;  // the whole table of a body: refused where its value is read
   std::vector<std::string> known = bodies;
   known.insert(known.end(), fields.begin(), fields.end());
   throw override_error(one, fmt::format("there is neither a body nor a field of a body named {}", steps[1].key),
-                       joined(known), "Correct the path." + suggestion(steps[1].key, known));
+                       fmt::format("{}", fmt::join(known, ", ")),
+                       "Correct the path." + suggestion(steps[1].key, known));
 }
 
 /// A misspelt material would be made and never used.
@@ -116,7 +112,7 @@ void check_material_exists(const TomlValue& document, const Override& one, const
   std::vector<std::string> names = keys_of(document.find("material"));
   if (names.empty()) names.emplace_back("default");  // the built-in one
   if (contains(names, steps[1].key)) return;
-  throw override_error(one, "there is no material named " + steps[1].key, joined(names),
+  throw override_error(one, "there is no material named " + steps[1].key, fmt::format("{}", fmt::join(names, ", ")),
                        "Correct the path." + suggestion(steps[1].key, names));
 }
 

@@ -17,10 +17,6 @@ constexpr double kOpenReach = 0.02;
 /// Points of a part that are looked at to tell whether it lies inside another.
 constexpr std::size_t kSamples = 5;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 using Corners = std::array<Vec3, 3>;
 
 double orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {

@@ -11,7 +11,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 256;
+constexpr std::int64_t kSlideGrain = 256;
 
 /// Shares of a mean boundary edge: samples of the surface are so far apart; less is round-off; nodes nearer than that
 /// to the surface are on it.
@@ -22,10 +22,6 @@ constexpr double kNearlyLargest = 0.9;
 
 /// Parts of faces are not looked into below this share of the mean edge, of faces or of the surface, the smaller.
 constexpr double kSmallestPart = 0.25;
-
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
 
 Vec3 area_vector(const std::array<Vec3, 3>& x) {
   return 0.5 * (x[1] - x[0]).cross(x[2] - x[0]);
@@ -84,7 +80,7 @@ void BoundarySlide::assign_samples(const SurfaceMesh& surface, double step, cons
   const std::vector<Vec3> points = sample_triangles(surface.positions, surface.triangles, step);
   const TriangleTree boundary(nodes_, faces_);
   std::vector<TriangleTree::Nearest> found(points.size());
-  threads.for_chunks(static_cast<std::int64_t>(points.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(static_cast<std::int64_t>(points.size()), kSlideGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
       found[i] = boundary.nearest(points[i]);
   });

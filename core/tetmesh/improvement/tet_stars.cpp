@@ -5,10 +5,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 bool has(const Tet& tet, Index node) {
   return tet[0] == node || tet[1] == node || tet[2] == node || tet[3] == node;
 }

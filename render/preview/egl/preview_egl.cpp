@@ -27,8 +27,7 @@ namespace softreel {
 
 namespace {
 
-constexpr int kAntiAliasing = 4;  ///< samples a pixel
-constexpr float kPi = 3.14159265f;
+constexpr int kAntiAliasing = 4;     ///< samples a pixel
 constexpr float kVertexLitSize = 5;  ///< pixels: smaller triangles are lit at their vertices
 
 /// Clip coordinates: the camera's window fills the picture, depth from `near` to `far` metres.
@@ -69,7 +68,8 @@ Environment as_gradient(const Environment& environment) {
     for (int r = 0; r < kRows; ++r)
       for (int c = 0; c < kColumns; ++c) {
         const float y = low + (high - low) * (static_cast<float>(r) + 0.5f) / kRows;
-        const float azimuth = 2 * kPi * (static_cast<float>(c) + 0.5f) / kColumns, ring = std::sqrt(1 - y * y);
+        const float azimuth = 2 * std::numbers::pi_v<float> * (static_cast<float>(c) + 0.5f) / kColumns,
+                    ring = std::sqrt(1 - y * y);
         sum += environment_radiance(environment, Vec3f(ring * std::sin(azimuth), y, ring * std::cos(azimuth)));
       }
     return Vec3f(sum / (kRows * kColumns));

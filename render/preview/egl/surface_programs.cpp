@@ -11,8 +11,6 @@
 namespace softreel {
 namespace {
 
-constexpr float kPi = 3.14159265f;
-
 /// Units of textures; 0 has the shadow maps.
 enum Unit : GLuint { kColorUnit = 1, kRoughnessUnit, kNormalUnit, kBumpUnit };
 
@@ -22,11 +20,11 @@ float seen_area(const AreaLight& lamp) {
     case LampShape::Rectangle:
       return 4 * lamp.u.cross(lamp.v).norm();
     case LampShape::Disk:
-      return kPi * lamp.u.cross(lamp.v).norm();
+      return std::numbers::pi_v<float> * lamp.u.cross(lamp.v).norm();
     case LampShape::Sphere:
       break;
   }
-  return kPi * lamp.u.squaredNorm();
+  return std::numbers::pi_v<float> * lamp.u.squaredNorm();
 }
 
 /// More lights than the shader has room for: the first ones, which a shot lists by importance.

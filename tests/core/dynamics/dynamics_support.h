@@ -1,6 +1,7 @@
 /// A simulator with its surroundings, made in one line.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -9,6 +10,15 @@
 #include "tests/support/bcc_bar.h"
 
 namespace softreel::testing {
+
+inline constexpr double kFps = 24;
+
+/// Of two lists of positions of the same points, m.
+inline double greatest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) greatest = std::max(greatest, (a[i] - b[i]).norm());
+  return greatest;
+}
 
 /// A body whose surface points are its nodes, so that pins and pulls select nodes.
 inline BodyModel body_model(TetMesh mesh, const ElementMaterial& material) {

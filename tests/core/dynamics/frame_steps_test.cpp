@@ -12,8 +12,8 @@ namespace {
 
 using testing::Bench;
 using testing::body_model;
-
-constexpr double kFps = 24;
+using testing::greatest_distance;
+using testing::kFps;
 
 /// A bar that is held at one end and carried to the right and back down between frames 2 and 4.
 BodyModel carried_bar(double damping_mass) {
@@ -57,12 +57,6 @@ Motion simulate(const BodyModel& model, const SolverParams& params, int frames) 
   }
   result.positions = bench.simulator.state().positions;
   return result;
-}
-
-double greatest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double greatest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) greatest = std::max(greatest, (a[i] - b[i]).norm());
-  return greatest;
 }
 
 TEST(FrameSteps, AreSubstepsOfEqualLengthUnlessErrorsAreControlled) {

@@ -13,8 +13,8 @@ namespace softreel {
 namespace {
 
 using testing::Bench;
+using testing::kFps;
 
-constexpr double kFps = 24;
 constexpr int kStart = 1, kGrabbed = 5, kReleased = 9, kAgain = 12, kEnd = 16;
 
 /// A bar held at its left end; at the right end, what a test asks for while active in two ranges.

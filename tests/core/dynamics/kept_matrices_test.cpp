@@ -13,8 +13,9 @@ namespace {
 
 using testing::Bench;
 using testing::body_model;
+using testing::greatest_distance;
+using testing::kFps;
 
-constexpr double kFps = 24;
 constexpr int kFrames = 12;
 
 /// A long bar, clamped in the middle and in balance with its weight, of which one end is pulled aside.
@@ -32,15 +33,15 @@ BodyModel half_moved_bar() {
   return model;
 }
 
-struct Motion {
+struct WorkedMotion {
   std::vector<Vec3> positions;
   FrameReport work;  ///< summed over the frames
 };
 
-Motion simulate(const SolverParams& params, int thread_count = 1) {
+WorkedMotion simulate(const SolverParams& params, int thread_count = 1) {
   Bench bench(half_moved_bar(), params, thread_count);
   EXPECT_TRUE(bench.simulator.find_equilibrium(0).ok());
-  Motion motion;
+  WorkedMotion motion;
   for (int frame = 1; frame <= kFrames; ++frame) {
     const FrameReport report = advance_to_frame(
         bench.simulator, frame, kFps, [] {}, [](int) {});
@@ -63,15 +64,9 @@ SolverParams params_with(double matrix_lag, bool keep_hierarchy, double toleranc
   return params;
 }
 
-double greatest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double greatest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) greatest = std::max(greatest, (a[i] - b[i]).norm());
-  return greatest;
-}
-
 TEST(KeptMatrices, ChangeTheAnswerByLessThanTheTolerance) {
-  const Motion kept = simulate(params_with(0.1, true)), made = simulate(params_with(0, false)),
-               exact = simulate(params_with(0, false, 1e-10));
+  const WorkedMotion kept = simulate(params_with(0.1, true)), made = simulate(params_with(0, false)),
+                     exact = simulate(params_with(0, false, 1e-10));
   EXPECT_GT(kept.work.kept_matrices, 0.2 * kept.work.steps) << "half of the body hardly moves";
   EXPECT_GE(kept.work.kept_hierarchies, kFrames);
   EXPECT_EQ(made.work.kept_hierarchies, 0);

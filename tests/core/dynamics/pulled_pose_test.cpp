@@ -12,6 +12,7 @@ namespace softreel {
 namespace {
 
 using testing::Bench;
+using testing::greatest_distance;
 
 /// Stiff ends and a soft knee between them, held at the low end; a pull on the knee from frame 2 and one on the other
 /// end from frame 3.
@@ -41,12 +42,6 @@ std::vector<Vec3> forces_of(const BodyModel& model, const Pull& pull, double fra
   return forces;
 }
 
-double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
-  return largest;
-}
-
 TEST(PulledPose, BalancesTheSumOfAllPullsThatWereAdded) {
   const BodyModel model = posed_leg();
   Bench bench(model, testing::exact_params());
@@ -55,8 +50,8 @@ TEST(PulledPose, BalancesTheSumOfAllPullsThatWereAdded) {
     ASSERT_TRUE(bench.simulator.find_equilibrium(frame).ok());
     poses.push_back(bench.simulator.state().positions);
   }
-  EXPECT_GT(largest_distance(poses[1], poses[0]), 0.02) << "the first pull moves it";
-  EXPECT_GT(largest_distance(poses[2], poses[1]), 0.02) << "so does the second";
+  EXPECT_GT(greatest_distance(poses[1], poses[0]), 0.02) << "the first pull moves it";
+  EXPECT_GT(greatest_distance(poses[2], poses[1]), 0.02) << "so does the second";
   const std::vector<Vec3>& pose = poses[2];
   const ElasticBody body = make_elastic_body(model.mesh, model.materials, Dilatation::Capped);
   std::vector<Quaternion> rotations = bench.simulator.state().rotations;
@@ -90,9 +85,9 @@ TEST(PulledPose, StaysWhileThePullsStayAndLeavesWithTheFirstThatEnds) {
   ASSERT_TRUE(bench.simulator.find_equilibrium(3).ok());
   const std::vector<Vec3> pose = bench.simulator.state().positions;
   for (int frame = 4; frame <= 23; ++frame) ASSERT_TRUE(bench.simulator.step(frame, 1.0 / 24).ok());
-  EXPECT_LT(largest_distance(bench.simulator.state().positions, pose), 1e-8);
+  EXPECT_LT(greatest_distance(bench.simulator.state().positions, pose), 1e-8);
   for (int frame = 24; frame <= 30; ++frame) ASSERT_TRUE(bench.simulator.step(frame, 1.0 / 24).ok());
-  EXPECT_GT(largest_distance(bench.simulator.state().positions, pose), 0.02);
+  EXPECT_GT(greatest_distance(bench.simulator.state().positions, pose), 0.02);
 }
 
 }  // namespace

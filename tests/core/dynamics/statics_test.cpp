@@ -15,6 +15,7 @@ namespace {
 using testing::Bench;
 using testing::body_model;
 using testing::exact_params;
+using testing::greatest_distance;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -29,14 +30,8 @@ std::vector<Index> plane_x(const TetMesh& mesh, double x) {
   return testing::select_nodes(mesh, [x](const Vec3& p) { return std::abs(p.x() - x) < 1e-9; });
 }
 
-TetMesh small_bar() {
+TetMesh cubed_bar() {
   return testing::kuhn_bar({6, 3, 3}, Vec3(0.6, 0.3, 0.3));
-}
-
-double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
-  return largest;
 }
 
 std::vector<Vec3> transformed(const Transform& transform, std::vector<Vec3> points) {
@@ -45,16 +40,16 @@ std::vector<Vec3> transformed(const Transform& transform, std::vector<Vec3> poin
 }
 
 TEST(FindEquilibrium, KeepsAFreeBodyAtRestWhereItIs) {
-  BodyModel model = body_model(small_bar(), rubber());
+  BodyModel model = body_model(cubed_bar(), rubber());
   model.gravity.setZero();
   Bench bench(model, exact_params());
   const StepReport report = bench.simulator.find_equilibrium(1);
   ASSERT_TRUE(report.ok()) << report.culprit;
-  EXPECT_LT(largest_distance(bench.simulator.state().positions, model.mesh.nodes), 1e-14);
+  EXPECT_LT(greatest_distance(bench.simulator.state().positions, model.mesh.nodes), 1e-14);
 }
 
 TEST(FindEquilibrium, RelaxesAFreeBodyAboutItsCentreOfMass) {
-  BodyModel model = body_model(small_bar(), rubber());
+  BodyModel model = body_model(cubed_bar(), rubber());
   model.gravity.setZero();
   Bench bench(model, exact_params());
   SimulationState state = bench.simulator.state();
@@ -80,7 +75,7 @@ TEST_P(RigidPins, MoveTheBodyRigidly) {
   for (const bool both_ends : {false, true})
     for (const RotationMethod rotation : {RotationMethod::Consistent, RotationMethod::Energy, RotationMethod::Paper,
                                           RotationMethod::PolarSmooth, RotationMethod::Qr}) {
-      BodyModel model = body_model(small_bar(), rubber());
+      BodyModel model = body_model(cubed_bar(), rubber());
       model.gravity.setZero();
       Transform motion;
       motion.translate = Vec3(1, -2, 0.5);
@@ -95,7 +90,7 @@ TEST_P(RigidPins, MoveTheBodyRigidly) {
       Bench bench(model, params);
       const StepReport report = bench.simulator.find_equilibrium(1);
       ASSERT_TRUE(report.ok()) << report.culprit;
-      EXPECT_LT(largest_distance(bench.simulator.state().positions, transformed(motion, model.mesh.nodes)),
+      EXPECT_LT(greatest_distance(bench.simulator.state().positions, transformed(motion, model.mesh.nodes)),
                 1e-9 * 0.74);
     }
 }
@@ -118,7 +113,7 @@ TEST(FindEquilibrium, PassesThePatchTest) {
     Bench bench(model, exact_params());
     const StepReport report = bench.simulator.find_equilibrium(1);
     ASSERT_TRUE(report.ok()) << report.culprit;
-    EXPECT_LT(largest_distance(bench.simulator.state().positions, transformed(affine, model.mesh.nodes)), 1e-11);
+    EXPECT_LT(greatest_distance(bench.simulator.state().positions, transformed(affine, model.mesh.nodes)), 1e-11);
   }
 }
 
@@ -141,7 +136,7 @@ TEST(FindEquilibrium, PassesThePatchTestToRoundOffOnAnIrregularMesh) {
   Bench bench(model, params);
   const StepReport report = bench.simulator.find_equilibrium(1);
   ASSERT_TRUE(report.ok()) << report.culprit;
-  EXPECT_LT(largest_distance(bench.simulator.state().positions, transformed(affine, mesh.nodes)), 1e-12);
+  EXPECT_LT(greatest_distance(bench.simulator.state().positions, transformed(affine, mesh.nodes)), 1e-12);
 }
 
 TEST(FindEquilibrium, StretchesStiffAndSoftHalvesInSeriesByTheirStiffness) {
@@ -182,7 +177,7 @@ TEST(FindEquilibrium, StretchesStiffAndSoftHalvesInSeriesByTheirStiffness) {
 }
 
 TEST(FindEquilibrium, HangsAStiffBodyOnSpringsWhereTheyBalanceItsWeight) {
-  BodyModel model = body_model(small_bar(), rubber());
+  BodyModel model = body_model(cubed_bar(), rubber());
   for (ElementMaterial& material : model.materials) material.youngs_modulus = 1e9;
   const double weight = 1000 * 0.6 * 0.3 * 0.3 * 9.81, stiffness = 1e4;
   model.pulls = {testing::make_pull(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.y() > 0.299; }), {},
@@ -271,7 +266,7 @@ TEST(FindEquilibrium, TakesNoMoreIterationsWhereTheRotationHasNoEnergy) {
 }
 
 TEST(FindEquilibrium, FindsTheSameShapeFromAboveAndBelow) {
-  BodyModel model = body_model(small_bar(), rubber());
+  BodyModel model = body_model(cubed_bar(), rubber());
   model.pins = {testing::make_pin(plane_x(model.mesh, 0))};
   Bench rest(model, exact_params()), bent(model, exact_params());
   SimulationState state = bent.simulator.state();
@@ -279,21 +274,21 @@ TEST(FindEquilibrium, FindsTheSameShapeFromAboveAndBelow) {
   bent.simulator.set_state(state);
   ASSERT_TRUE(rest.simulator.find_equilibrium(1).ok());
   ASSERT_TRUE(bent.simulator.find_equilibrium(1).ok());
-  EXPECT_LT(largest_distance(rest.simulator.state().positions, bent.simulator.state().positions), 1e-9);
+  EXPECT_LT(greatest_distance(rest.simulator.state().positions, bent.simulator.state().positions), 1e-9);
 }
 
 TEST(FindEquilibrium, StaysAtRestInDynamics) {
-  BodyModel model = body_model(small_bar(), rubber());
+  BodyModel model = body_model(cubed_bar(), rubber());
   model.pins = {testing::make_pin(plane_x(model.mesh, 0))};
   Bench bench(model, exact_params());
   ASSERT_TRUE(bench.simulator.find_equilibrium(1).ok());
   const std::vector<Vec3> start = bench.simulator.state().positions;
   for (int k = 1; k <= 3; ++k) ASSERT_TRUE(bench.simulator.step(k, 1.0 / 24).ok());
-  EXPECT_LT(largest_distance(bench.simulator.state().positions, start), 1e-10);
+  EXPECT_LT(greatest_distance(bench.simulator.state().positions, start), 1e-10);
 }
 
 TEST(FindEquilibrium, LetsABodyOnOneSpringSwingDownBelowIt) {
-  BodyModel model = body_model(small_bar(), rubber());
+  BodyModel model = body_model(cubed_bar(), rubber());
   model.gravity = Vec3(0, -1, 0);
   model.pulls = {testing::make_pull({0}, {}, 1e4)};
   SolverParams params;
@@ -347,7 +342,7 @@ TEST(FindEquilibrium, FindsWhereAHeavyBodyHangsFromPinsThatStay) {
 }
 
 TEST(FindEquilibrium, SaysThatAnUnheldBodyFallsForEver) {
-  Bench bench(body_model(small_bar(), rubber()));
+  Bench bench(body_model(cubed_bar(), rubber()));
   try {
     bench.simulator.find_equilibrium(3);
     FAIL() << "no error";

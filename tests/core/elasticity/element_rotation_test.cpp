@@ -10,23 +10,14 @@
 #include <gtest/gtest.h>
 
 #include "core/elasticity/jacobi4.h"
+#include "tests/support/random.h"
 
 namespace softreel {
 namespace {
 
-using Random = std::mt19937_64;
-
-Mat3 random_matrix(Random& random) {
-  std::normal_distribution<double> normal;
-  Mat3 A;
-  for (int k = 0; k < 9; ++k) A(k / 3, k % 3) = normal(random);
-  return A;
-}
-
-Quaternion random_rotation(Random& random) {
-  std::normal_distribution<double> normal;
-  return Quaternion(normal(random), normal(random), normal(random), normal(random)).normalized();
-}
+using test_support::Random;
+using test_support::random_matrix;
+using test_support::random_rotation;
 
 /// U diag(s) V^T with random rotations U and V.
 Mat3 with_singular_values(const Vec3& s, Random& random) {

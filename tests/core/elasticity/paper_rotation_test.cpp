@@ -8,21 +8,14 @@
 #include <gtest/gtest.h>
 
 #include "core/elasticity/element_rotation.h"
+#include "tests/support/random.h"
 
 namespace softreel {
 namespace {
 
-using Random = std::mt19937_64;
-
-Vec3 random_vector(Random& random) {
-  std::normal_distribution<double> normal;
-  return {normal(random), normal(random), normal(random)};
-}
-
-Quaternion random_rotation(Random& random) {
-  std::normal_distribution<double> normal;
-  return Quaternion(normal(random), normal(random), normal(random), normal(random)).normalized();
-}
+using test_support::Random;
+using test_support::random_rotation;
+using test_support::random_vector;
 
 TetNodes rest_tet(Random& random) {
   TetNodes rest{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.2, 1, 0), Vec3(0.1, 0.3, 0.8)};

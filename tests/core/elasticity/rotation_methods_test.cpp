@@ -10,11 +10,15 @@
 
 #include "core/elasticity/elastic_body.h"
 #include "tests/support/bcc_bar.h"
+#include "tests/support/random.h"
 
 namespace softreel {
 namespace {
 
-using Random = std::mt19937_64;
+using test_support::Random;
+using test_support::random_matrix;
+using test_support::random_rotation;
+using test_support::random_vector;
 
 struct Method {
   std::string name;
@@ -34,22 +38,6 @@ const std::vector<Method> kRotating{{"consistent", RotationMethod::Consistent},
 class EveryRotation : public ::testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(Methods, EveryRotation, ::testing::ValuesIn(kRotating),
                          [](const auto& tested) { return tested.param.name; });
-
-Vec3 random_vector(Random& random) {
-  std::normal_distribution<double> normal;
-  return {normal(random), normal(random), normal(random)};
-}
-
-Mat3 random_matrix(Random& random) {
-  Mat3 A;
-  for (int k = 0; k < 3; ++k) A.col(k) = random_vector(random);
-  return A;
-}
-
-Quaternion random_rotation(Random& random) {
-  std::normal_distribution<double> normal;
-  return Quaternion(normal(random), normal(random), normal(random), normal(random)).normalized();
-}
 
 Quaternion turn(double angle, const Vec3& axis) {
   return Quaternion(Eigen::AngleAxisd(angle, axis.normalized()));

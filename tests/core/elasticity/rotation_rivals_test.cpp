@@ -9,23 +9,16 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/bcc_bar.h"
+#include "tests/support/random.h"
 
 namespace softreel {
 namespace {
 
-using Random = std::mt19937_64;
+using test_support::Random;
+using test_support::random_rotation;
+using test_support::random_vector;
 
-Vec3 random_vector(Random& random) {
-  std::normal_distribution<double> normal;
-  return {normal(random), normal(random), normal(random)};
-}
-
-Quaternion random_rotation(Random& random) {
-  std::normal_distribution<double> normal;
-  return Quaternion(normal(random), normal(random), normal(random), normal(random)).normalized();
-}
-
-const TetNodes kRest{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.2, 1, 0), Vec3(0.1, 0.3, 0.8)};
+const TetNodes kRestTet{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.2, 1, 0), Vec3(0.1, 0.3, 0.8)};
 
 Mat3 edges(const TetNodes& nodes) {
   Mat3 columns;
@@ -34,12 +27,12 @@ Mat3 edges(const TetNodes& nodes) {
 }
 
 TEST(FindQrRotation, LeavesAnUpperTriangularFactorInTheRestFrame) {
-  // kRest's edge 0-1 and face 0-1-2 lie along x and xy, so its frame is the identity: Q^T D must be triangular.
+  // kRestTet's edge 0-1 and face 0-1-2 lie along x and xy, so its frame is the identity: Q^T D must be triangular.
   Random random(1);
   for (int sample = 0; sample < 100; ++sample) {
     TetNodes deformed;
     for (Vec3& node : deformed) node = random_vector(random);
-    const Mat3 Q = find_qr_rotation(kRest, deformed, random_rotation(random)).toRotationMatrix();
+    const Mat3 Q = find_qr_rotation(kRestTet, deformed, random_rotation(random)).toRotationMatrix();
     const Mat3 factor = Q.transpose() * edges(deformed);
     EXPECT_NEAR(factor(1, 0), 0, 1e-13);
     EXPECT_NEAR(factor(2, 0), 0, 1e-13);
@@ -56,16 +49,16 @@ TEST(FindQrRotation, FallsBackOnTheGuessWhereTheFaceIsALine) {
     const Quaternion guess = random_rotation(random);
     const Vec3 axis = random_vector(random).normalized();
     const TetNodes line{Vec3::Zero(), 2 * axis, -3 * axis, axis};
-    const Quaternion found = find_qr_rotation(kRest, line, guess);
+    const Quaternion found = find_qr_rotation(kRestTet, line, guess);
     EXPECT_LT((found * Vec3(1, 0, 0) - axis).norm(), 1e-14);
     EXPECT_NEAR(found.angularDistance(guess), std::acos((guess * Vec3(1, 0, 0)).dot(axis)), 1e-7) << "the least turn";
     const TetNodes no_edge{axis, axis, 2 * axis, Vec3::Zero()};
-    EXPECT_TRUE(find_qr_rotation(kRest, no_edge, guess).isApprox(guess, 0));
+    EXPECT_TRUE(find_qr_rotation(kRestTet, no_edge, guess).isApprox(guess, 0));
   }
-  TetNodes bad = kRest;
+  TetNodes bad = kRestTet;
   bad[2].x() = std::numeric_limits<double>::quiet_NaN();
   const Quaternion guess = random_rotation(random);
-  EXPECT_TRUE(find_qr_rotation(kRest, bad, guess).isApprox(guess, 0));
+  EXPECT_TRUE(find_qr_rotation(kRestTet, bad, guess).isApprox(guess, 0));
 }
 
 TEST(FindQrRotation, IsTheSameAtAnyScale) {
@@ -73,8 +66,8 @@ TEST(FindQrRotation, IsTheSameAtAnyScale) {
   for (const double scale : {1e-200, 1e-12, 1e6, 1e200}) {
     const Quaternion q = random_rotation(random);
     TetNodes deformed;
-    for (std::size_t k = 0; k < 4; ++k) deformed[k] = q * (scale * kRest[k]);
-    const Quaternion found = find_qr_rotation(kRest, deformed, random_rotation(random));
+    for (std::size_t k = 0; k < 4; ++k) deformed[k] = q * (scale * kRestTet[k]);
+    const Quaternion found = find_qr_rotation(kRestTet, deformed, random_rotation(random));
     EXPECT_LT((found.toRotationMatrix() - q.toRotationMatrix()).norm(), 1e-14) << scale;
   }
 }

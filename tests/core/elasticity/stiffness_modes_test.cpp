@@ -9,16 +9,13 @@
 #include "core/elasticity/assembly.h"
 #include "tests/support/bcc_bar.h"
 #include "tests/support/elastic_box.h"
+#include "tests/support/random.h"
 
 namespace softreel {
 namespace {
 
-using Random = std::mt19937_64;
-
-Vec3 random_vector(Random& random) {
-  std::normal_distribution<double> normal;
-  return {normal(random), normal(random), normal(random)};
-}
+using test_support::Random;
+using test_support::random_vector;
 
 TetMesh irregular_bar() {
   TetMesh mesh = testing::kuhn_bar({3, 2, 2}, Vec3(0.3, 0.2, 0.2));

@@ -11,12 +11,9 @@ namespace softreel {
 namespace {
 
 using test_support::assemble;
+using test_support::at_left_end;
 using test_support::ElasticParams;
 using test_support::ElasticSystem;
-
-bool at_left_end(const Vec3& x) {
-  return x[0] < 1e-9;
-}
 
 struct Choice {
   const char* name;

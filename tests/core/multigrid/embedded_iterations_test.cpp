@@ -16,7 +16,7 @@ using test_support::assemble;
 using test_support::ElasticParams;
 using test_support::ElasticSystem;
 
-int iterations(const SurfaceMesh& surface, TetMode mode, double edge, double seconds, double pinned_below) {
+int iterations_of_filling(const SurfaceMesh& surface, TetMode mode, double edge, double seconds, double pinned_below) {
   const Threads threads(1);
   StageTimes times;
   const TetMesh mesh = tetrahedralize(surface, {.edge = edge, .mode = mode}, "test", threads, {}, times);
@@ -40,9 +40,9 @@ constexpr double kSteps[] = {0.0, 1.0 / 96};
 /// From the first lattice to finer ones, by a third at most.
 void expect_no_growth(const SurfaceMesh& surface, const std::vector<double>& edges, double pinned_below) {
   for (const double seconds : kSteps) {
-    const int coarse = iterations(surface, TetMode::Embedded, edges.front(), seconds, pinned_below);
+    const int coarse = iterations_of_filling(surface, TetMode::Embedded, edges.front(), seconds, pinned_below);
     for (const double edge : edges)
-      EXPECT_LE(iterations(surface, TetMode::Embedded, edge, seconds, pinned_below), 1.3 * coarse + 1)
+      EXPECT_LE(iterations_of_filling(surface, TetMode::Embedded, edge, seconds, pinned_below), 1.3 * coarse + 1)
           << "edge " << edge << ", step " << seconds;
   }
 }
@@ -59,8 +59,8 @@ TEST(EmbeddedIterations, OfABarAreThoseOfAConformingOneWithinAHalf) {
   const SurfaceMesh bar = test::make_box({0.5, 0.125, 0.125}, 8, Vec3::Zero());
   for (const double seconds : kSteps)
     for (const double edge : {0.06, 0.03})
-      EXPECT_LE(iterations(bar, TetMode::Embedded, edge, seconds, -0.45),
-                1.5 * iterations(bar, TetMode::Conforming, edge, seconds, -0.45));
+      EXPECT_LE(iterations_of_filling(bar, TetMode::Embedded, edge, seconds, -0.45),
+                1.5 * iterations_of_filling(bar, TetMode::Conforming, edge, seconds, -0.45));
 }
 
 }  // namespace

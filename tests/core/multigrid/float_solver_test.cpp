@@ -15,13 +15,10 @@ namespace softreel {
 namespace {
 
 using test_support::assemble;
+using test_support::at_left_end;
 using test_support::ElasticParams;
 using test_support::ElasticSystem;
 using test_support::make_box;
-
-bool at_left_end(const Vec3& x) {
-  return x[0] < 1e-9;
-}
 
 SolveReport solve_in_double(const TetMesh& mesh, const ElasticSystem& system, double tolerance) {
   const Threads threads(1);

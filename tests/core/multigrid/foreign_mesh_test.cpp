@@ -22,7 +22,7 @@ using test_support::ElasticSystem;
 using test_support::make_box;
 
 /// Iterations to 1e-6 of a mesh clamped where x < edge.
-int iterations(const TetMesh& mesh, double seconds, double edge = 1e-9, int axis = 0) {
+int foreign_iterations(const TetMesh& mesh, double seconds, double edge = 1e-9, int axis = 0) {
   ElasticParams params;
   params.seconds = seconds;
   const ElasticSystem system = assemble(mesh, params, [&](const Vec3& x) { return x[axis] < edge; });
@@ -105,7 +105,7 @@ TEST(ForeignMesh, HasLevelsThatShrinkLikeThoseOfALattice) {
 TEST(ForeignMesh, FindsTheLatticeOfALatticeMeshAgain) {
   const TetMesh mesh = test_support::make_bar(6);
   for (const double seconds : {0.0, 1.0 / 96})
-    EXPECT_EQ(iterations(without_lattice(mesh), seconds), iterations(mesh, seconds));
+    EXPECT_EQ(foreign_iterations(without_lattice(mesh), seconds), foreign_iterations(mesh, seconds));
 }
 
 TEST(ForeignMesh, TakesAboutTheIterationsOfALatticeMesh) {
@@ -119,10 +119,11 @@ TEST(ForeignMesh, TakesAboutTheIterationsOfALatticeMesh) {
                          {"Kuhn, shaken", shaken(kuhn, 0.01, 0.1), 1.3, 1.8},
                          {"slivers of 1 % of the volume", shaken(kuhn, 0.015, 0.01), 1.7, 2.4},
                          {"graded 8 to 1", tapered(test_support::make_bar(6), 8), 1.7, 1.6}};
-  const int dynamic = iterations(test_support::make_bar(6), 1.0 / 96), still = iterations(test_support::make_bar(6), 0);
+  const int dynamic = foreign_iterations(test_support::make_bar(6), 1.0 / 96),
+            still = foreign_iterations(test_support::make_bar(6), 0);
   for (const Mesh& m : meshes) {
-    EXPECT_LE(iterations(m.mesh, 1.0 / 96), m.dynamic * dynamic) << m.name;
-    EXPECT_LE(iterations(m.mesh, 0), m.still * still) << m.name;
+    EXPECT_LE(foreign_iterations(m.mesh, 1.0 / 96), m.dynamic * dynamic) << m.name;
+    EXPECT_LE(foreign_iterations(m.mesh, 0), m.still * still) << m.name;
   }
 }
 
@@ -133,7 +134,7 @@ TEST(ForeignMesh, TakesForTwoLegsAboutTheIterationsOfOne) {
       TetMesh one = make_box({4, 4, 20}, 0.05);
       TetMesh two = make_box({10, 4, 20}, 0.05, [](Index x, Index, Index z) { return x < 4 || x > 5 || z > 17; });
       if (!lattice) one.lattice = two.lattice = {};
-      EXPECT_LE(iterations(two, seconds, 1e-9, 2), 1.2 * iterations(one, seconds, 1e-9, 2));
+      EXPECT_LE(foreign_iterations(two, seconds, 1e-9, 2), 1.2 * foreign_iterations(one, seconds, 1e-9, 2));
     }
 }
 
@@ -151,7 +152,7 @@ TEST(ForeignMesh, AGradedMeshConvergesTooWithMoreIterationsThanAUniformOne) {
   const TetMesh uniform =
       tetrahedralize(surface, {.tets = static_cast<std::int64_t>(graded.tets.size())}, "spiked", threads, log, times);
   for (const double seconds : {0.0, 1.0 / 96})
-    EXPECT_LE(iterations(graded, seconds, -0.9), 2.5 * iterations(uniform, seconds, -0.9));
+    EXPECT_LE(foreign_iterations(graded, seconds, -0.9), 2.5 * foreign_iterations(uniform, seconds, -0.9));
 }
 
 }  // namespace

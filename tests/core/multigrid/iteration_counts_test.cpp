@@ -14,14 +14,11 @@ namespace softreel {
 namespace {
 
 using test_support::assemble;
+using test_support::at_left_end;
 using test_support::ElasticParams;
 using test_support::ElasticSystem;
 
 constexpr double kSteps[] = {0.0, 1.0 / 96};
-
-bool at_left_end(const Vec3& x) {
-  return x[0] < 1e-9;
-}
 
 /// A bar 0.25 m wide of `across` cubes.
 TetMesh bar(Index aspect, Index across) {

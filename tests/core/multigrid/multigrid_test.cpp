@@ -14,13 +14,10 @@ namespace softreel {
 namespace {
 
 using test_support::assemble;
+using test_support::at_left_end;
 using test_support::ElasticParams;
 using test_support::ElasticSystem;
 using test_support::make_box;
-
-bool at_left_end(const Vec3& x) {
-  return x[0] < 1e-9;
-}
 
 struct Solution {
   SolveReport report;
@@ -38,7 +35,7 @@ Solution solve(const TetMesh& mesh, const ElasticSystem& system, double toleranc
   return solution;
 }
 
-int iterations(const TetMesh& mesh, const ElasticParams& params, double tolerance = 1e-6) {
+int iterations_to(const TetMesh& mesh, const ElasticParams& params, double tolerance = 1e-6) {
   const ElasticSystem system = assemble(mesh, params, at_left_end);
   const Solution solution = solve(mesh, system, tolerance);
   EXPECT_EQ(solution.report.status, SolveStatus::Converged);
@@ -71,8 +68,8 @@ TEST(Multigrid, TakesNoMoreIterationsOnFinerMeshes) {
       ElasticParams params;
       params.poisson_ratio = nu;
       params.seconds = seconds;
-      const int coarse = iterations(test_support::make_bar(4), params);
-      const int fine = iterations(test_support::make_bar(8), params);
+      const int coarse = iterations_to(test_support::make_bar(4), params);
+      const int fine = iterations_to(test_support::make_bar(8), params);
       EXPECT_LE(coarse, 16) << "nu " << nu << ", step " << seconds;
       EXPECT_LE(fine, coarse + 3) << "nu " << nu << ", step " << seconds;
     }
@@ -104,15 +101,15 @@ TEST(Multigrid, TakesAFewTimesTheIterationsNearIncompressibilityIfNotTold) {
   ElasticParams params;
   params.poisson_ratio = 0.3;
   const TetMesh mesh = test_support::make_bar(5);
-  const int compressible = iterations(mesh, params);
+  const int compressible = iterations_to(mesh, params);
   params.poisson_ratio = 0.49;
-  EXPECT_LE(iterations(mesh, params), 4 * compressible);
+  EXPECT_LE(iterations_to(mesh, params), 4 * compressible);
 }
 
 TEST(Multigrid, TakesAboutAsManyIterationsAtAnyAspect) {
-  const int cube = iterations(make_box({6, 6, 6}, 0.1), {});
+  const int cube = iterations_to(make_box({6, 6, 6}, 0.1), {});
   for (const Index aspect : {3, 10})
-    EXPECT_LE(iterations(make_box({4 * aspect, 4, 4}, 0.1), {}), cube + 6) << "aspect " << aspect;
+    EXPECT_LE(iterations_to(make_box({4 * aspect, 4, 4}, 0.1), {}), cube + 6) << "aspect " << aspect;
 }
 
 TEST(Multigrid, CopesWithAStiffnessContrastOfAMillion) {
@@ -371,12 +368,12 @@ TEST(Multigrid, StaysAPreconditionerForANearbyMatrix) {
 
 TEST(Multigrid, KeepsItsIterationsUnderTinyAndHugeUnits) {
   const TetMesh mesh = make_box({12, 4, 4}, 0.1);
-  const int reference = iterations(mesh, {});
+  const int reference = iterations_to(mesh, {});
   for (const double scale : {1e-12, 1e12}) {
     ElasticParams params;
     params.youngs_modulus = 1e6 * scale;
     params.density = 1000 * scale * scale;
-    EXPECT_EQ(iterations(mesh, params), reference);
+    EXPECT_EQ(iterations_to(mesh, params), reference);
   }
 }
 

@@ -11,7 +11,7 @@ namespace softreel {
 namespace {
 
 /// Iterations to 1e-6 of a mesh clamped where x < edge.
-int iterations(const TetMesh& mesh, double seconds, double edge) {
+int iterations_of_step(const TetMesh& mesh, double seconds, double edge) {
   test_support::ElasticParams params;
   params.seconds = seconds;
   const test_support::ElasticSystem system =
@@ -37,7 +37,7 @@ TEST(OptimizedMesh, TakesNoMoreIterationsThanBefore) {
     ASSERT_NE(optimized.nodes, plain.nodes);
     ASSERT_NE(optimized.tets, plain.tets);
     for (const double seconds : {0.0, 1.0 / 96})
-      EXPECT_LE(iterations(optimized, seconds, -1.2), 1.1 * iterations(plain, seconds, -1.2) + 1);
+      EXPECT_LE(iterations_of_step(optimized, seconds, -1.2), 1.1 * iterations_of_step(plain, seconds, -1.2) + 1);
   }
 }
 

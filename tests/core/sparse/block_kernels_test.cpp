@@ -50,7 +50,7 @@ NodeVector<Scalar> plain_product(const BlockMatrix<Scalar>& A, const NodeVector<
 }
 
 template <typename Scalar>
-class BlockKernels : public testing::Test {};
+class BlockKernels : public ::testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(BlockKernels, Scalars);
 

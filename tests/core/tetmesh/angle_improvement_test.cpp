@@ -17,10 +17,6 @@
 namespace softreel {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 TetMesh fill(const SurfaceMesh& surface, const TetrahedralizeParams& params, int threads = 1) {
   StageTimes times;
   return tetrahedralize(surface, params, "blob", Threads(threads), {}, times);

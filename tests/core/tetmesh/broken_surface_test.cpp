@@ -10,7 +10,7 @@
 namespace softreel {
 namespace {
 
-class BrokenSurfaces : public testing::TestWithParam<test::BrokenSurface> {};
+class BrokenSurfaces : public ::testing::TestWithParam<test::BrokenSurface> {};
 
 TetMesh fill(const test::BrokenSurface& broken, std::vector<std::string>& lines, int threads) {
   SurfaceMesh mesh = broken.mesh;
@@ -44,7 +44,7 @@ TEST_P(BrokenSurfaces, AreFilledOrRefused) {
   EXPECT_EQ(fill(broken, lines, 3).nodes, mesh.nodes);
 }
 
-INSTANTIATE_TEST_SUITE_P(Zoo, BrokenSurfaces, testing::ValuesIn(test::broken_surfaces()),
+INSTANTIATE_TEST_SUITE_P(Zoo, BrokenSurfaces, ::testing::ValuesIn(test::broken_surfaces()),
                          [](const auto& surface) { return surface.param.name; });
 
 }  // namespace

@@ -206,7 +206,7 @@ TEST(EmbeddedLattice, RefusesAnErrorBudget) {
   }
 }
 
-class EmbeddedZoo : public testing::TestWithParam<test::BrokenSurface> {};
+class EmbeddedZoo : public ::testing::TestWithParam<test::BrokenSurface> {};
 
 /// What differs from conforming mode: bodies that touch stay parted, and nothing is too thin.
 Index expected_pieces(const test::BrokenSurface& broken) {
@@ -243,7 +243,7 @@ TEST_P(EmbeddedZoo, IsCoveredOrRefused) {
   EXPECT_EQ(again.fill, mesh.fill);
 }
 
-INSTANTIATE_TEST_SUITE_P(Zoo, EmbeddedZoo, testing::ValuesIn(test::broken_surfaces()),
+INSTANTIATE_TEST_SUITE_P(Zoo, EmbeddedZoo, ::testing::ValuesIn(test::broken_surfaces()),
                          [](const auto& surface) { return surface.param.name; });
 
 TEST(EmbeddedLattice, CoversTheSharedMeshesInOnePiece) {

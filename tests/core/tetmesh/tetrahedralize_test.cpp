@@ -32,7 +32,7 @@ struct Filling {
   Threads threads_;
 };
 
-class Tetrahedralize : public testing::Test {
+class Tetrahedralize : public ::testing::Test {
  protected:
   Filling fill;
 };

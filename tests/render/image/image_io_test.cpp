@@ -13,7 +13,7 @@ namespace softreel {
 namespace {
 
 std::string written(const std::string& name, const std::vector<std::uint8_t>& bytes) {
-  const std::string path = (std::filesystem::path(testing::TempDir()) / name).string();
+  const std::string path = (std::filesystem::path(::testing::TempDir()) / name).string();
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return path;

@@ -19,7 +19,7 @@ DisplayImage noise(int width, int height) {
 }
 
 DisplayImage read_back(const std::vector<std::uint8_t>& bytes) {
-  const std::string path = (std::filesystem::path(testing::TempDir()) / "softreel_strips.png").string();
+  const std::string path = (std::filesystem::path(::testing::TempDir()) / "softreel_strips.png").string();
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return read_png(path);

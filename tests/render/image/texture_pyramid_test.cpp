@@ -51,11 +51,11 @@ TEST(MakePyramid, KeepsEqualTexelsBitForBit) {
     for (const Vec3f& texel : level.texels) EXPECT_EQ(texel, color);
 }
 
-class TextureFiles : public testing::Test {
+class TextureFiles : public ::testing::Test {
  protected:
   static std::string path(const std::string& name) {
-    return testing::TempDir() + "/softreel_texture_" + testing::UnitTest::GetInstance()->current_test_info()->name() +
-           "_" + name;
+    return ::testing::TempDir() + "/softreel_texture_" +
+           ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" + name;
   }
   static std::string write(const std::string& name, const std::vector<std::uint8_t>& bytes) {
     std::ofstream(path(name), std::ios::binary)

@@ -9,7 +9,7 @@
 namespace softreel {
 namespace {
 
-std::shared_ptr<const ColorTexture> checker(int size, int squares) {
+std::shared_ptr<const ColorTexture> checker_colors(int size, int squares) {
   std::vector<Vec3f> texels;
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x)
@@ -48,13 +48,13 @@ TEST(TexturedPicture, OfAConstantTextureIsThePictureOfTheConstantColour) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(a.channels[c].pixels, b.channels[c].pixels);
 }
 
-/// A checker floor that runs far away, seen at a slant.
+/// A checker_colors floor that runs far away, seen at a slant.
 Image far_checker(int samples) {
   Scene scene = scene_in_sky(1);
   scene.camera.position = Vec3f(0, 1, 30);
   scene.camera.target = Vec3f(0, 0, 5);
   scene.camera.focal_length_mm = 60;
-  scene.meshes = {floor_with(30, checker(1024, 256))};
+  scene.meshes = {floor_with(30, checker_colors(1024, 256))};
   RenderParams params = small_params(48, samples);
   params.max_bounces = 1;
   return rendered(scene, params);
@@ -89,7 +89,7 @@ TEST(TexturedPicture, ACheckerSeenFromAfarHasNoMoireAndAgreesWithBruteForce) {
 TEST(TexturedPicture, HasTheSameBitsOnOneAndTwoThreads) {
   Scene scene = scene_in_sky(1);
   scene.camera.position = Vec3f(1.5f, 1.2f, 2);
-  scene.meshes = {floor_with(2, checker(64, 8)), sphere(Vec3f(0, 0.4f, 0), 0.4f, matte(0.5f), 12)};
+  scene.meshes = {floor_with(2, checker_colors(64, 8)), sphere(Vec3f(0, 0.4f, 0), 0.4f, matte(0.5f), 12)};
   for (const Vec3f& p : scene.meshes[1].times[0].positions) scene.meshes[1].coloring.heat.push_back(p.y());
   const Image one = rendered(scene, small_params(40, 4), 1), two = rendered(scene, small_params(40, 4), 2);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(one.channels[c].pixels, two.channels[c].pixels);

@@ -14,12 +14,12 @@
 namespace softreel {
 
 /// A fresh folder per test; removed at its end. Tests run in it, so that messages show short paths.
-class ShotFiles : public testing::Test {
+class ShotFiles : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     before_ = std::filesystem::current_path();
-    folder_ = std::filesystem::path(testing::TempDir()) /
+    folder_ = std::filesystem::path(::testing::TempDir()) /
               ("softreel_" + std::string(info->test_suite_name()) + "_" + info->name());
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);

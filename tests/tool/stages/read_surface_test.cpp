@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A folder with a mesh file and a cache.
-class ReadSurfaceTest : public testing::Test {
+class ReadSurfaceTest : public ::testing::Test {
  protected:
   ReadSurfaceTest() {
     fs::remove_all(folder_);
