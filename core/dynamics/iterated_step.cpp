@@ -6,6 +6,33 @@
 namespace softreel {
 namespace {
 
+/// (U' - I) of an element, its norm: beyond, where its stretch turns over in a step, the tangent of its damping by
+/// strains is too far from the truth for Newton (scrambled bodies took hundreds of iterations).
+constexpr double kGreatestStrain = 0.5;
+
+/// D of StepPotential, which takes over the elements that are too distorted; without values if none is. Its axes are
+/// frozen at the step's start for Euler, for the others at the predictor of its end, or they were of first order.
+BlockMatrixd take_distorted(Simulator::Parts& parts, const StepWork& work, StrainDamping& damping) {
+  BlockMatrixd frozen{parts.matrix.pattern, {}};
+  if (damping.empty() || parts.params.rotation == RotationMethod::None) return frozen;
+  std::vector<double> shares(parts.damping_stiffness.size(), 0.0);
+  bool any = false;
+  for (std::size_t e = 0; e < shares.size(); ++e) {
+    if (damping.ratios[e] == 0 || (damping.stretches[e] - Mat3::Identity()).norm() <= kGreatestStrain) continue;
+    shares[e] = parts.damping_stiffness[e] / work.step.seconds.position;
+    damping.ratios[e] = 0;
+    any = true;
+  }
+  if (!any) return frozen;
+  const bool euler = parts.params.integrator == Integrator::Euler;
+  const std::vector<Vec3>& positions = euler ? parts.state.positions : work.positions;
+  std::vector<Quaternion> rotations = parts.state.rotations;
+  find_rotations(parts.body, parts.params.rotation, positions, rotations, parts.threads);
+  find_stiffness_terms(parts.body, positions, rotations, shares, Curvature::None, parts.terms, {}, parts.threads);
+  parts.assembler().assemble(parts.terms, std::vector<double>(parts.nodes(), 0.0), frozen, parts.threads);
+  return frozen;
+}
+
 /// Empty if no element has damping of this kind. The dilatation's slopes are those where the step linearises, so that
 /// they are the same all through it.
 StrainDamping find_strain_damping(const Simulator::Parts& parts, const StepWork& work) {
@@ -37,7 +64,8 @@ StrainDamping find_strain_damping(const Simulator::Parts& parts, const StepWork&
 StepPotential find_potential(Simulator::Parts& parts, const StepWork& work) {
   const TimeStep& step = work.step;
   const double t = step.seconds.velocity, r = step.seconds.position;
-  StepPotential potential{{}, {}, find_strain_damping(parts, work)};
+  StepPotential potential{{}, {}, find_strain_damping(parts, work), step.base_positions, {}};
+  potential.frozen_damping = take_distorted(parts, work, potential.damping);
   for (std::size_t i = 0; i < parts.nodes(); ++i) {
     const double mass = parts.masses.mass[i], weight = (mass / t + parts.masses.damping[i]) / r;
     potential.weights.push_back(weight);

@@ -177,6 +177,9 @@ void StaticSolver::assemble(const StaticState& state, Curvature curvature) {
   if (is_damped()) adjust_terms_to_damping(state, curvature);
   parts_.assembler().assemble(parts_.terms, node_terms_, parts_.matrix, parts_.threads);
   for (const ActivePull& pull : pulls_) add_pull_stiffness(pull, state.positions, 1.0, parts_.matrix);
+  if (potential_ == nullptr || !potential_->has_frozen_damping()) return;
+  const AlignedVector<double>& frozen = potential_->frozen_damping.values;
+  for (std::size_t k = 0; k < frozen.size(); ++k) parts_.matrix.values[k] += frozen[k];
 }
 
 bool StaticSolver::is_damped() const {
