@@ -6,31 +6,66 @@
 namespace softreel {
 namespace {
 
-/// D of StepPotential; without values if no element has damping of this kind. Its rotations are frozen, or the damping
-/// had no potential: Euler's at the step's start, those of second order at the predictor of its end, as with rotations
-/// of the start the damping forces, and with them the step, would be of first order.
-BlockMatrixd assemble_damping(Simulator::Parts& parts, const StepWork& work) {
-  BlockMatrixd damping{parts.matrix.pattern, {}};
-  std::vector<double> shares(parts.damping_stiffness);
-  bool damped = false;
-  for (double& share : shares) {
-    damped = damped || share > 0;
-    share /= work.step.seconds.position;
+/// (U' - I) of an element, its norm: beyond, where its stretch turns over in a step, the tangent of its damping by
+/// strains is too far from the truth for Newton (scrambled bodies took hundreds of iterations).
+constexpr double kGreatestStrain = 0.5;
+
+/// D of StepPotential, which takes over the elements that are too distorted; without values if none is. Its axes are
+/// frozen at the step's start for Euler, for the others at the predictor of its end, or they were of first order.
+BlockMatrixd take_distorted(Simulator::Parts& parts, const StepWork& work, StrainDamping& damping) {
+  BlockMatrixd frozen{parts.matrix.pattern, {}};
+  if (damping.empty() || parts.params.rotation == RotationMethod::None) return frozen;
+  std::vector<double> shares(parts.damping_stiffness.size(), 0.0);
+  bool any = false;
+  for (std::size_t e = 0; e < shares.size(); ++e) {
+    if (damping.ratios[e] == 0 || (damping.stretches[e] - Mat3::Identity()).norm() <= kGreatestStrain) continue;
+    shares[e] = parts.damping_stiffness[e] / work.step.seconds.position;
+    damping.ratios[e] = 0;
+    any = true;
   }
-  if (!damped) return damping;
+  if (!any) return frozen;
   const bool euler = parts.params.integrator == Integrator::Euler;
   const std::vector<Vec3>& positions = euler ? parts.state.positions : work.positions;
   std::vector<Quaternion> rotations = parts.state.rotations;
   find_rotations(parts.body, parts.params.rotation, positions, rotations, parts.threads);
   find_stiffness_terms(parts.body, positions, rotations, shares, Curvature::None, parts.terms, {}, parts.threads);
-  parts.assembler().assemble(parts.terms, std::vector<double>(parts.nodes(), 0.0), damping, parts.threads);
+  parts.assembler().assemble(parts.terms, std::vector<double>(parts.nodes(), 0.0), frozen, parts.threads);
+  return frozen;
+}
+
+/// Empty if no element has damping of this kind. The dilatation's slopes are those where the step linearises, so that
+/// they are the same all through it.
+StrainDamping find_strain_damping(const Simulator::Parts& parts, const StepWork& work) {
+  StrainDamping damping;
+  if (!parts.damps_strain()) return damping;
+  const SimulationState& state = parts.state;
+  const RotationMethod rotation = damping.rotation = parts.params.rotation;
+  // Newmark's own strain rate would be that of its velocities, which keep for ever what of a rigid turn is a stretch in
+  // them. By the strains alone it is of second order and stable, too: in the linear oscillator's recurrence the
+  // difference's imaginary part has one sign on the unit circle, which no root then crosses.
+  const bool euler = parts.params.integrator == Integrator::Euler;
+  const BackwardDifference rate = euler ? BackwardDifference{work.step.h, 0} : backward_difference(state, work.step.h);
+  damping.stretches = find_stretches(parts.body, rotation, state.positions, state.rotations, parts.threads);
+  if (rate.back != 0) {
+    const std::vector<Mat3> before =
+        find_stretches(parts.body, rotation, state.previous_positions, state.rotations, parts.threads);
+    for (std::size_t e = 0; e < before.size(); ++e)
+      damping.stretches[e] += rate.back * (damping.stretches[e] - before[e]);
+  }
+  for (std::size_t e = 0; e < parts.body.tets.size(); ++e) {
+    const Mat3 F = deformation_gradient(parts.body.shapes[e].gradients, nodes_of(parts.body.tets[e], work.positions));
+    const double trace = corotated_strain(work.rotations[e].toRotationMatrix(), F).trace();
+    damping.ratios.push_back(parts.damping_stiffness[e] / rate.seconds);
+    damping.slopes.push_back(parts.body.laws[e].pressure_slope(trace));
+  }
   return damping;
 }
 
 StepPotential find_potential(Simulator::Parts& parts, const StepWork& work) {
   const TimeStep& step = work.step;
   const double t = step.seconds.velocity, r = step.seconds.position;
-  StepPotential potential{{}, {}, step.base_positions, assemble_damping(parts, work)};
+  StepPotential potential{{}, {}, find_strain_damping(parts, work), step.base_positions, {}};
+  potential.frozen_damping = take_distorted(parts, work, potential.damping);
   for (std::size_t i = 0; i < parts.nodes(); ++i) {
     const double mass = parts.masses.mass[i], weight = (mass / t + parts.masses.damping[i]) / r;
     potential.weights.push_back(weight);

@@ -232,6 +232,10 @@ Simulator::Simulator(BodyModel model, const SolverParams& params, const Threads&
                      StageTimes& times)
     : parts_(std::make_unique<Parts>(std::move(model), params, threads, log, times)) {}
 
+bool Simulator::Parts::damps_strain() const {
+  return std::any_of(damping_stiffness.begin(), damping_stiffness.end(), [](double b) { return b > 0; });
+}
+
 Simulator::~Simulator() = default;
 
 const BodyModel& Simulator::model() const {

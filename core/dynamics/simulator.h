@@ -91,7 +91,7 @@ struct SimulationState {
   std::vector<Vec3> positions;                 ///< nodes x 3, m
   std::vector<Vec3> velocities;                ///< nodes x 3, m/s
   std::vector<Quaternion> rotations;           ///< per element, warm start of the next extraction
-  std::vector<Vec3> previous_positions{};      ///< BDF2: before the last step, m
+  std::vector<Vec3> previous_positions{};      ///< BDF2, Newmark that damps strain: before the last step, m
   std::vector<Vec3> previous_velocities{};     ///< BDF2: before the last step, m/s
   std::vector<Vec3> accelerations{};           ///< nodes x 3, m/s^2: Newmark's, and the next solve's first guess
   std::vector<Vec3> previous_accelerations{};  ///< before the last step: how the guess changes

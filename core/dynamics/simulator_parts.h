@@ -88,6 +88,8 @@ struct Simulator::Parts {
 
   std::size_t nodes() const { return model.mesh.nodes.size(); }
 
+  /// True if an element has damping of its stiffness.
+  bool damps_strain() const;
   bool has_grabs() const;
   /// What pins and pulls grab once the body has come to `frame` in the present state.
   Grabs grabs_at(double frame) const;

@@ -12,11 +12,8 @@
 namespace softreel {
 namespace {
 
-constexpr double kArmijo = 1e-4;  ///< share of the promised decrease of energy that a step must reach
-constexpr int kHalvings = 16;     ///< of a step in the line search
 constexpr int kIndefiniteIterations =
     100;                                  ///< of a solve that may be indefinite: with its cycle a definite one takes 30
-constexpr double kLongestStep = 256;      ///< times the full step, where the tangent has negative curvature
 constexpr double kNearer = 0.5;           ///< residual of an unfinished linear solve whose result is still of use
 constexpr int kGmresIterations = 30;      ///< where the tangent is not symmetric; they keep 60 vectors
 constexpr double kInnerTolerance = 0.03;  ///< of the solves that precondition them
@@ -26,6 +23,7 @@ constexpr double kBestLinearTolerance = 1e-10;
 /// Stiffness against rigid motion of pieces without a pin, relative to the mean stiffness of a node: far below the
 /// softest deformation of any mesh that fits in memory, far above round-off.
 constexpr double kRigidShift = 1e-7;
+constexpr std::int64_t kElementGrain = 1024;
 
 double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   double sum = 0;
@@ -83,15 +81,19 @@ StaticSolver::StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t
       shares_(parts.body.tets.size(), 1.0),
       node_terms_(potential != nullptr ? potential->weights : rigid_shifts(parts, held)) {
   parts_.stresses.resize(parts.body.tets.size());
+  if (is_damped())
+    for (std::size_t e = 0; e < shares_.size(); ++e) shares_[e] += potential->damping.ratios[e];
 }
 
 /// Adds the step's forces to those of the state; returns its energy.
 double StaticSolver::add_potential(StaticState& state) {
   if (potential_ == nullptr) return 0;
   step_forces_.resize(state.positions.size());
-  const double energy = potential_->evaluate(state.positions, step_forces_, parts_.threads);
+  const DampingEnergy energy =
+      potential_->evaluate(parts_.body, state.positions, state.rotations, step_forces_, parts_.threads);
   for (std::size_t i = 0; i < step_forces_.size(); ++i) state.forces[i] += step_forces_[i];
-  return energy;
+  state.energy_noise = energy.noise;
+  return energy.value;
 }
 
 void StaticSolver::evaluate(StaticState& state) {
@@ -104,6 +106,7 @@ void StaticSolver::evaluate(StaticState& state) {
   find_stresses(parts_.body, state.positions, state.rotations, parts_.stresses, parts_.threads);
   parts_.gather_all_forces(state.positions, pulls_, state.forces);
   const double elastic = elastic_energy(parts_.body, state.positions, state.rotations, parts_.threads);
+  state.energy_noise = 0;
   const double step = add_potential(state);
   double weight = 0, terms = std::abs(elastic) + std::abs(step);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
@@ -115,8 +118,7 @@ void StaticSolver::evaluate(StaticState& state) {
   state.energy = elastic - weight + step;
   for (const ActivePull& pull : pulls_) state.energy += pull_energy(pull, state.positions);
   terms += std::abs(state.energy);
-  state.energy_noise = 100 * std::numeric_limits<double>::epsilon() * terms;
-  if (potential_ != nullptr) state.energy_noise += potential_->energy_noise(state.positions);
+  state.energy_noise += 100 * std::numeric_limits<double>::epsilon() * terms;
   measure_scales(state);
   state.residual = std::sqrt(dot(state.forces, state.forces));
 }
@@ -135,7 +137,7 @@ void StaticSolver::measure_scales(StaticState& state) const {
       const auto node = static_cast<std::size_t>(body.tets[e][k]);
       const Vec3 gradient = shape.gradients.col(static_cast<Index>(k));
       magnitudes[node] += (parts_.stresses[e] * gradient).norm();
-      errors[node] += shape.volume * greatest_modulus(body.laws[e]) * gradient.norm() * strain_error;
+      errors[node] += shares_[e] * shape.volume * greatest_modulus(body.laws[e]) * gradient.norm() * strain_error;
     }
   }
   // What rounding its point and its target does to a spring's force. The force itself is no scale: stiff pulls that
@@ -172,11 +174,44 @@ void StaticSolver::assemble(const StaticState& state, Curvature curvature) {
   if (parts_.params.rotation == RotationMethod::None) curvature = Curvature::None;
   find_stiffness_terms(parts_.body, state.positions, state.rotations, shares_, curvature, parts_.terms, {},
                        parts_.threads);
+  if (is_damped()) adjust_terms_to_damping(state, curvature);
   parts_.assembler().assemble(parts_.terms, node_terms_, parts_.matrix, parts_.threads);
   for (const ActivePull& pull : pulls_) add_pull_stiffness(pull, state.positions, 1.0, parts_.matrix);
-  if (potential_ == nullptr || !potential_->has_damping_stiffness()) return;
-  const AlignedVector<double>& damping = potential_->damping_stiffness.values;
-  for (std::size_t k = 0; k < damping.size(); ++k) parts_.matrix.values[k] += damping[k];
+  if (potential_ == nullptr || !potential_->has_frozen_damping()) return;
+  const AlignedVector<double>& frozen = potential_->frozen_damping.values;
+  for (std::size_t k = 0; k < frozen.size(); ++k) parts_.matrix.values[k] += frozen[k];
+}
+
+bool StaticSolver::is_damped() const {
+  return potential_ != nullptr && !potential_->damping.empty();
+}
+
+/// Of the shares, only 1 is elastic; that of damping has slopes and curvature of its own.
+void StaticSolver::adjust_terms_to_damping(const StaticState& state, Curvature curvature) {
+  StiffnessTerms& terms = parts_.terms;
+  const StrainDamping& damping = potential_->damping;
+  const auto chunk = [&](std::int64_t begin, std::int64_t end) {
+    double adjusted = 0;
+    for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
+      const double share = 1 - 1 / shares_[e];
+      if (share == 0) continue;
+      const ElasticLaw& law = parts_.body.laws[e];
+      if (const double ratio = damping.slopes[e] / law.mu; ratio != terms.ratios[e]) {
+        terms.ratios[e] += share * (ratio - terms.ratios[e]);
+        ++adjusted;
+      }
+      if (terms.curvatures.empty()) continue;
+      const Mat3 F =
+          deformation_gradient(parts_.body.shapes[e].gradients, nodes_of(parts_.body.tets[e], state.positions));
+      terms.curvatures[e] += damping_curvature(law, damping, e, state.rotations[e].toRotationMatrix(), F,
+                                               curvature == Curvature::PositivePart) /
+                             law.mu;
+      terms.curvatures[e] /= shares_[e];
+    }
+    return adjusted;
+  };
+  const double different = parts_.threads.sum_chunks(static_cast<std::int64_t>(shares_.size()), kElementGrain, chunk);
+  terms.uniform_ratio = terms.uniform_ratio && different == 0;
 }
 
 SolveReport StaticSolver::solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
@@ -214,7 +249,7 @@ std::vector<Vec3> StaticSolver::forces_at(std::vector<Vec3> positions, std::vect
   find_stresses(parts_.body, positions, rotations, parts_.stresses, parts_.threads);
   parts_.gather_all_forces(positions, pulls_, forces);
   std::vector<Vec3> of_step(potential_ != nullptr ? forces.size() : 0);
-  if (potential_ != nullptr) potential_->evaluate(positions, of_step, parts_.threads);
+  if (potential_ != nullptr) potential_->evaluate(parts_.body, positions, rotations, of_step, parts_.threads);
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (potential_ != nullptr) forces[i] += of_step[i];
     if (held_[i] != 0) forces[i].setZero();
@@ -281,49 +316,6 @@ bool StaticSolver::find_stable_direction(const StaticState& state, double tolera
   return solve_direction(state, tolerance, parts_.params.max_iterations, direction);
 }
 
-/// One Newton step. An unfinished solve with the exact tangent may point nowhere although it descends at first: then
-/// the positive part has another try.
-bool StaticSolver::step_along(StaticState& state, double tolerance, bool has_direction, std::vector<Vec3>& direction) {
-  if (has_direction && search_line(state, direction)) return true;
-  if (unstable_ || !has_energy(parts_.params.rotation)) return false;
-  return find_stable_direction(state, tolerance, direction) && search_line(state, direction);
-}
-
-bool StaticSolver::improves(const StaticState& from, const StaticState& to, double step, double slope) const {
-  if (!std::isfinite(to.residual) || !std::isfinite(to.energy)) return false;
-  // eq. (3)'s rotation, for one, has no energy: there only the residual can tell.
-  if (!has_energy(parts_.params.rotation)) return to.residual < (1 - kArmijo * step) * from.residual;
-  if (to.energy <= from.energy - kArmijo * step * slope) return true;
-  return to.energy <= from.energy + std::max(from.energy_noise, to.energy_noise) && to.residual < from.residual;
-}
-
-StaticState StaticSolver::moved(const StaticState& state, std::span<const Vec3> direction, double step) {
-  StaticState next{state.positions, state.rotations, {}};
-  for (std::size_t i = 0; i < direction.size(); ++i) next.positions[i] += step * direction[i];
-  evaluate(next);
-  return next;
-}
-
-/// Halves the step until it improves. Where the exact tangent has negative curvature (a body about to buckle) the full
-/// step of its positive part is far too short, so there it is doubled as long as the energy falls.
-bool StaticSolver::search_line(StaticState& state, std::span<const Vec3> direction) {
-  const double slope = dot(direction, state.forces);
-  double step = 1;
-  for (int halving = 0; halving <= kHalvings; ++halving, step *= 0.5) {
-    StaticState next = moved(state, direction, step);
-    if (!improves(state, next, step, slope)) continue;
-    while (unstable_ && step >= 1 && step < kLongestStep) {
-      StaticState farther = moved(state, direction, 2 * step);
-      if (!(farther.energy < next.energy)) break;
-      next = std::move(farther);
-      step *= 2;
-    }
-    state = std::move(next);
-    return true;
-  }
-  return false;
-}
-
 /// The first iteration that moves held nodes is a full step: the body follows as a linear one would.
 bool StaticSolver::move_held(StaticState& state, std::span<const Vec3> targets) {
   const std::size_t n = state.positions.size();
@@ -367,9 +359,13 @@ SolveReport StaticSolver::solve(StaticState& state, std::span<const Vec3> target
   evaluate(state);
   if (!std::isfinite(state.residual) || !move_held(state, targets)) return finish(SolveStatus::Breakdown);
   std::vector<Vec3> direction(state.positions.size());
+  double before = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     if (state.residual <= tolerance * state.scale) return finish(SolveStatus::Converged);
-    if (state.residual <= state.round_off) return finish(SolveStatus::RoundOff);
+    // What rounding explains is an upper bound: in a step of time, a residual that still falls may fall on.
+    const bool falls = potential_ != nullptr && state.residual < 0.5 * before;
+    if (state.residual <= state.round_off && !falls) return finish(SolveStatus::RoundOff);
+    before = state.residual;
     ++iterations_;
     // Looser far from the solution, so that the iteration converges superlinearly but no solve is finer than it helps.
     const double relative = state.residual / state.scale;

@@ -40,7 +40,9 @@ class StaticSolver {
   int iterations() const { return iterations_; }  ///< Newton iterations so far
 
  private:
+  bool is_damped() const;
   void assemble(const StaticState& state, Curvature curvature);
+  void adjust_terms_to_damping(const StaticState& state, Curvature curvature);
   SolveReport solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
                            int max_iterations, std::span<Vec3> change);
   void precondition(const StaticState& state);
@@ -51,6 +53,7 @@ class StaticSolver {
   bool find_stable_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction);
   bool step_along(StaticState& state, double tolerance, bool has_direction, std::vector<Vec3>& direction);
   StaticState moved(const StaticState& state, std::span<const Vec3> direction, double step);
+  bool search_ahead(StaticState& state, double tolerance, std::span<const Vec3> direction);
   bool search_line(StaticState& state, std::span<const Vec3> direction);
   bool move_held(StaticState& state, std::span<const Vec3> targets);
   bool improves(const StaticState& from, const StaticState& to, double step, double slope) const;
@@ -62,11 +65,12 @@ class StaticSolver {
   std::span<const std::uint8_t> held_pieces_;
   const std::vector<ActivePull>& pulls_;
   const StepPotential* potential_;
-  std::vector<double> shares_;      ///< 1 per element
+  std::vector<double> shares_;      ///< per element: 1 and b / r of damping
   std::vector<double> node_terms_;  ///< inertia; in statics, what holds the rigid motions of pieces without a pin
   std::vector<Vec3> step_forces_;   ///< of the potential at the state that was last evaluated, N
   bool unstable_ = false;           ///< the exact tangent gave no direction of descent at the present state
   int iterations_ = 0;
+  int ahead_pause_ = 1, next_ahead_ = 0;  ///< iterations to leave out after a failure of search_ahead; its next try
   int linear_iterations_ = 0;
 };
 

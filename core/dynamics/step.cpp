@@ -181,6 +181,10 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
   next.grabs = parts.state.grabs;
   next.bonds = std::move(work.bonds);
   remember(parts.params, work.step, parts.state, work.pinned.held, work.pinned.targets, next);
+  // Of an iterated step; Newmark itself does not need them.
+  const bool iterated = linearization(parts.params) == Linearize::Iterated;
+  if (parts.params.integrator == Integrator::Newmark && iterated && parts.damps_strain())
+    next.previous_positions = parts.state.positions;
   return next;
 }
 

@@ -38,11 +38,9 @@ TimeStep begin_euler(const SimulationState& state, double h) {
   return {h, {h, h}, state.positions, state.velocities};
 }
 
-/// Backward differentiation of second order for steps of any lengths, their ratio r = h / h0: the slope at the end of
-/// the parabola through y0 (a step of h0 earlier: yp) and y is (y - y0 - r^2 / (1 + 2 r) (y0 - yp)) (1 + 2 r) / ((1 +
-/// r) h), for y = x and y = v.
+/// Backward differentiation of second order, for y = x and y = v.
 TimeStep begin_bdf2(const SimulationState& state, double h) {
-  const double r = h / state.previous_seconds, back = r * r / (1 + 2 * r), seconds = h * (1 + r) / (1 + 2 * r);
+  const auto [seconds, back] = backward_difference(state, h);
   TimeStep step = begin_euler(state, h);
   step.seconds = {seconds, seconds};
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
@@ -65,6 +63,14 @@ TimeStep begin_newmark(const NewmarkParams& newmark, const SimulationState& stat
 }
 
 }  // namespace
+
+/// With the ratio of steps r = h / h0: the slope at the end of the parabola through y0 (a step of h0 earlier: yp) and y
+/// is (y - y0 - r^2 / (1 + 2 r) (y0 - yp)) (1 + 2 r) / ((1 + r) h).
+BackwardDifference backward_difference(const SimulationState& state, double h) {
+  if (state.previous_positions.empty()) return {h, 0};
+  const double r = h / state.previous_seconds;
+  return {h * (1 + r) / (1 + 2 * r), r * r / (1 + 2 * r)};
+}
 
 bool lacks_accelerations(const SolverParams& params, const SimulationState& state) {
   return params.integrator == Integrator::Newmark && state.accelerations.empty();

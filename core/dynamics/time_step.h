@@ -21,6 +21,14 @@ struct TimeStep {
   std::vector<Vec3> base_velocities;  ///< per node, m/s
 };
 
+/// The slope at the step's end of what was y0 at its start and yp a step before: (y - y0 - back (y0 - yp)) / seconds.
+struct BackwardDifference {
+  double seconds = 0, back = 0;
+};
+
+/// Of second order, for steps of any lengths, where `state` knows the step before it; else of first.
+BackwardDifference backward_difference(const SimulationState& state, double h);
+
 /// True if the step needs the accelerations at its start, and `state` does not hold them.
 bool lacks_accelerations(const SolverParams& params, const SimulationState& state);
 

@@ -39,9 +39,9 @@ struct DialStudy {
 };
 
 /// Turns the dial on each error and finds the truth, which is led on from two meshes, one with edges half as long as
-/// the other's (Richardson): a bar's are cut where its pins end (plane_bar.h), so that their errors are of second
-/// order; another body's are softreel's own, of first order. Steps are an eighth of a frame, corrected by what steps of
-/// a 32nd change on a coarse mesh. Throws Error if the shot cannot be read, std::runtime_error if a run fails.
+/// the other's (Richardson): a bar's are cut where its pins end (plane_bar.h), so that their errors are smooth and of
+/// order 1.2; another body's are softreel's own, of first order. Steps are an eighth of a frame, corrected by what
+/// steps of a 32nd change on a coarse mesh. Throws Error if the shot cannot be read, std::runtime_error if a run fails.
 DialStudy study_dial(const DialProblem& problem);
 
 }  // namespace softreel::bench

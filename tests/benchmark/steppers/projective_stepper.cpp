@@ -3,6 +3,7 @@
 // real-time simulation of hyperelastic materials", 2017.
 #include <stdexcept>
 
+#include "core/elasticity/element_rotation.h"
 #include "tests/benchmark/rivals/rival.h"
 #include "tests/benchmark/steppers/descent_memory.h"
 #include "tests/benchmark/steppers/rival_body.h"
@@ -171,9 +172,9 @@ class ProjectiveStepper : public Stepper {
       energy += add_stress(e, shape.volume, R, corotated_strain(R, F), stresses_[e].setZero());
       const double damping = rival_.damping_stiffness[e] / h;
       if (damping == 0) continue;
-      const Mat3 before = deformation_gradient(shape.gradients, nodes_of(body.tets[e], rival_.positions));
-      const Mat3 start = start_rotations_[e].toRotationMatrix(), strain = start.transpose() * (F - before);
-      energy += add_stress(e, damping * shape.volume, start, 0.5 * (strain + strain.transpose()), stresses_[e]);
+      const Mat3 start = deformation_gradient(shape.gradients, nodes_of(body.tets[e], rival_.positions));
+      const Mat3 before = corotated_strain(start_rotations_[e].toRotationMatrix(), start) + Mat3::Identity();
+      energy += add_damping(e, damping * shape.volume, R, F, before, stresses_[e]);
     }
     return energy;
   }
@@ -183,6 +184,17 @@ class ProjectiveStepper : public Stepper {
     const double mu = weight * rival_.body.laws[e].mu, pressure = weight * rival_.body.laws[e].lambda * strain.trace();
     stress += R * (2 * mu * strain + pressure * Mat3::Identity());
     return mu * strain.squaredNorm() + 0.5 * pressure * strain.trace();
+  }
+
+  /// The same for mu |F - Q before|^2 + lambda (tr(R^T F) - tr before)^2 / 2, with the projection Q on the turned
+  /// copies of the stretch at the start.
+  double add_damping(std::size_t e, double weight, const Mat3& R, const Mat3& F, const Mat3& before,
+                     Mat3& stress) const {
+    const Mat3 Q = find_rotation(F * before, Quaternion(R)).toRotationMatrix(), away = F - Q * before;
+    const double mu = weight * rival_.body.laws[e].mu, growth = (R.transpose() * F).trace() - before.trace();
+    const double pressure = weight * rival_.body.laws[e].lambda * growth;
+    stress += 2 * mu * away + pressure * R;
+    return mu * away.squaredNorm() + 0.5 * pressure * growth;
   }
 
   ProjectiveParams params_;

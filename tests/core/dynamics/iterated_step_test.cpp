@@ -6,7 +6,6 @@
 
 #include "core/dynamics/simulator.h"
 #include "core/dynamics/step_potential.h"
-#include "core/elasticity/assembly.h"
 #include "core/elasticity/mass.h"
 #include "tests/core/dynamics/dynamics_support.h"
 #include "tests/support/scrambled.h"
@@ -45,32 +44,36 @@ std::vector<Vec3> random_vectors(std::size_t count, double size, unsigned seed) 
   return vectors;
 }
 
+/// Damped from a stretch that is neither that of the present shape nor along its axes.
 TEST(StepPotential, HasItsForcesAsGradient) {
   const TetMesh mesh = thin_bar();
-  const std::size_t n = mesh.nodes.size();
+  const std::size_t n = mesh.nodes.size(), elements = mesh.tets.size();
   const Threads threads(1);
-  const std::vector<ElementMaterial> materials(mesh.tets.size());
-  const ElasticBody body = make_elastic_body(mesh, materials, Dilatation::Capped);
-  StepPotential potential{std::vector<double>(n, 3.0),
-                          random_vectors(n, 1, 1),
-                          random_vectors(n, 1, 2),
-                          {stiffness_pattern(mesh.tets, static_cast<Index>(n)), {}}};
-  StiffnessTerms terms;
-  const std::vector<Quaternion> rotations(mesh.tets.size(), Quaternion::Identity());
-  find_stiffness_terms(body, mesh.nodes, rotations, std::vector<double>(mesh.tets.size(), 1e-4), Curvature::None, terms,
-                       {}, threads);
-  StiffnessAssembler(mesh.tets, potential.damping_stiffness.pattern)
-      .assemble(terms, std::vector<double>(n, 0.0), potential.damping_stiffness, threads);
-  const std::vector<Vec3> direction = random_vectors(n, 1, 3);
-  std::vector<Vec3> forces(n), unused(n), moved(n);
-  const auto energy_at = [&](double step) {
-    for (std::size_t i = 0; i < n; ++i) moved[i] = mesh.nodes[i] + step * direction[i];
-    return potential.evaluate(moved, unused, threads);
-  };
-  potential.evaluate(mesh.nodes, forces, threads);
-  double slope = 0;
-  for (std::size_t i = 0; i < n; ++i) slope -= forces[i].dot(direction[i]);
-  EXPECT_NEAR((energy_at(1e-3) - energy_at(-1e-3)) / 2e-3, slope, 1e-9 * std::abs(slope));
+  const ElasticBody body = make_elastic_body(mesh, std::vector<ElementMaterial>(elements), Dilatation::Capped);
+  for (const RotationMethod method : {RotationMethod::Consistent, RotationMethod::None, RotationMethod::Qr}) {
+    StepPotential potential{std::vector<double>(n, 3.0), random_vectors(n, 1, 1), {}};
+    const std::vector<Quaternion> guesses(elements, Quaternion::Identity());
+    const auto shifted = [&](double size, unsigned seed) {
+      std::vector<Vec3> positions = random_vectors(n, size, seed);
+      for (std::size_t i = 0; i < n; ++i)
+        positions[i] += Vec3(-mesh.nodes[i].y(), mesh.nodes[i].x(), mesh.nodes[i].z());
+      return positions;
+    };
+    potential.damping = {std::vector<double>(elements, 0.7), std::vector<double>(elements, 4e5),
+                         find_stretches(body, method, shifted(0.02, 4), guesses, threads), method};
+    const std::vector<Vec3> positions = shifted(0.03, 2), direction = random_vectors(n, 0.1, 3);
+    std::vector<Vec3> forces(n), unused(n), moved(n);
+    const auto energy_at = [&](double step, std::span<Vec3> forces_there) {
+      for (std::size_t i = 0; i < n; ++i) moved[i] = positions[i] + step * direction[i];
+      std::vector<Quaternion> rotations = guesses;
+      find_rotations(body, method, moved, rotations, threads);
+      return potential.evaluate(body, moved, rotations, forces_there, threads).value;
+    };
+    energy_at(0, forces);
+    double slope = 0;
+    for (std::size_t i = 0; i < n; ++i) slope -= forces[i].dot(direction[i]);
+    EXPECT_NEAR((energy_at(1e-5, unused) - energy_at(-1e-5, unused)) / 2e-5, slope, 1e-6 * std::abs(slope));
+  }
 }
 
 /// Elastic forces, weight and inertia of the step from `before` on free nodes, N: what implicit Euler makes zero.
@@ -184,25 +187,82 @@ TEST(IteratedStep, ServesRotationsWithoutAnEnergyByTheResidual) {
   for (int k = 1; k <= 3; ++k) ASSERT_TRUE(bench.simulator.step(k, 1.0 / 24).ok());
 }
 
-/// Blocks of two cubes along the bar, in turn soft and a hundred million times as stiff. The damping of a stiff block
-/// that turns is a small difference of great numbers, whose rounding hides what a step gains in energy.
+/// Blocks of two cubes along the bar, in turn soft and so much stiffer; one end held.
+BodyModel two_materials(double contrast) {
+  BodyModel model = body_model(testing::kuhn_bar({8, 2, 2}, Vec3(0.8, 0.2, 0.2)), {2e4, 0.35, 1000, 2, 0.005});
+  for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
+    if (static_cast<int>(testing::centroid(model.mesh, e).x() / 0.2) % 2 == 1)
+      model.materials[e].youngs_modulus *= contrast;
+  model.pins = {testing::make_pin(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() < 1e-9; }))};
+  return model;
+}
+
+SolverParams iterated_without_recovery(Integrator integrator) {
+  SolverParams params;
+  params.integrator = integrator;
+  params.linearize = Linearize::Iterated;
+  params.recovery = false;
+  return params;
+}
+
+/// The energy of a stiff block is a small difference of great numbers, whose rounding hides what a step gains.
 TEST(IteratedStep, IsSolvedAtAStiffnessContrastOfAHundredMillion) {
   for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2}) {
-    BodyModel model = body_model(testing::kuhn_bar({8, 2, 2}, Vec3(0.8, 0.2, 0.2)), {2e4, 0.35, 1000, 2, 0.005});
-    for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
-      if (static_cast<int>(testing::centroid(model.mesh, e).x() / 0.2) % 2 == 1)
-        model.materials[e].youngs_modulus *= 1e8;
-    model.pins = {testing::make_pin(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() < 1e-9; }))};
-    SolverParams params;
-    params.integrator = integrator;
-    params.linearize = Linearize::Iterated;
-    Bench bench(model, params);
+    SolverParams params = iterated_without_recovery(integrator);
+    params.recovery = true;
+    Bench bench(two_materials(1e8), params);
     for (int k = 1; k <= 8; ++k) {
       const StepReport report = bench.simulator.step(k, 1.0 / 24);
       ASSERT_TRUE(report.ok()) << "step " << k << ": " << report.culprit;
       EXPECT_LE(report.solve.residual, params.force_tolerance);
     }
     EXPECT_LT(bench.simulator.state().positions.back().y(), 0.17) << "it sinks";
+  }
+}
+
+/// Blocks that are all but rigid turn with the bar: how stiff they are does not show, and in large steps no energy is
+/// gained beyond what the motion began with.
+TEST(IteratedStep, MovesAlikeAtEveryGreatContrast) {
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
+    std::vector<Vec3> first;
+    for (const double contrast : {1e6, 1e9}) {
+      Bench bench(two_materials(contrast), iterated_without_recovery(integrator));
+      const auto energy = [&] {
+        const StateMeasures measures = bench.simulator.measure();
+        return measures.kinetic_energy + measures.elastic_energy + measures.potential_energy;
+      };
+      const double start = energy();
+      for (int k = 1; k <= 24; ++k) {
+        ASSERT_TRUE(bench.simulator.step(k, 1.0 / 24).ok()) << contrast << ", step " << k;
+        EXPECT_LT(energy(), start) << contrast << ", step " << k;
+      }
+      const std::vector<Vec3>& positions = bench.simulator.state().positions;
+      if (first.empty()) first = positions;
+      for (std::size_t i = 0; i < first.size(); ++i) EXPECT_LT((positions[i] - first[i]).norm(), 2e-3);
+    }
+    EXPECT_LT(first.back().y(), -0.5) << "it sinks far";
+  }
+}
+
+/// A free, nearly rigid bar that turns by a quarter of a radian in a step.
+TEST(IteratedStep, StiffnessDampingLeavesARigidSpinAlone) {
+  const Vec3 centre(0.4, 0.1, 0.1), spin(0, 0, 6);
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2}) {
+    std::vector<Vec3> undamped;
+    for (const double damping : {0.0, 0.05}) {
+      BodyModel model = body_model(thin_bar(), {2e10, 0.35, 1000, 0, damping});
+      model.gravity.setZero();
+      Bench bench(model, iterated_without_recovery(integrator));
+      SimulationState state = bench.simulator.state();
+      for (std::size_t i = 0; i < state.positions.size(); ++i)
+        state.velocities[i] = spin.cross(state.positions[i] - centre);
+      bench.simulator.set_state(state);
+      for (int k = 1; k <= 8; ++k) ASSERT_TRUE(bench.simulator.step(k, 1.0 / 24).ok());
+      const std::vector<Vec3>& positions = bench.simulator.state().positions;
+      if (undamped.empty()) undamped = positions;
+      for (std::size_t i = 0; i < positions.size(); ++i) EXPECT_LT((positions[i] - undamped[i]).norm(), 1e-6);
+      EXPECT_GT((positions.back() - model.mesh.nodes.back()).norm(), 0.3) << "it turns";
+    }
   }
 }
 
