@@ -144,6 +144,7 @@ std::vector<CellCut> cut_cells(const LatticeSurface& surface, const Threads& thr
     std::vector<std::uint64_t> candidates;
     for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
       if (surface.used[at(t)]) cut_triangle(surface, t, candidates, chunks[static_cast<std::size_t>(begin / kGrain)]);
+    chunks[static_cast<std::size_t>(begin / kGrain)].shrink_to_fit();
   });
   std::size_t count = 0;
   for (const auto& chunk : chunks) count += chunk.size();
