@@ -62,7 +62,8 @@ struct InnerPoint {
 /// The surface in one cell, as far as parts need it.
 class CellSurface {
  public:
-  CellSurface(const LatticeSurface& surface, const SolidInside& inside, const BccCell& cell,
+  /// inside: null will do for nearest_cut.
+  CellSurface(const LatticeSurface& surface, const SolidInside* inside, const BccCell& cell,
               std::span<const CellCut> cuts)
       : surface_(surface), inside_(inside), cell_(cell), cuts_(cuts), patches_(cuts.size()) {
     const std::array<LatticeNode, 4> corners = cell_corners(cell);
@@ -76,7 +77,7 @@ class CellSurface {
     parts.count = number_parts(cut_parts);
     const std::array<LatticeNode, 4> corners = cell_corners(cell_);
     for (std::size_t k = 0; k < 4; ++k)
-      if (inside_.contains(corners[k])) parts.corners[k] = parts.count == 1 ? 0 : cut_parts[nearest_cut(corners_[k])];
+      if (inside_->contains(corners[k])) parts.corners[k] = parts.count == 1 ? 0 : cut_parts[nearest_cut(corners_[k])];
     if (!measure_exactly(cut_parts, parts)) measure_by_samples(cut_parts, parts);
     return parts;
   }
@@ -205,7 +206,7 @@ class CellSurface {
     std::vector<std::size_t> grid;
     for (std::size_t g = 0; g < kFillSamples; ++g) {
       const Vec3 p = point_at(sample_grid()[g].weights);
-      const double winding = inside_.winding(p);
+      const double winding = inside_->winding(p);
       if (std::abs(winding) < kInside) continue;
       points.push_back({p, winding, nearest_cut(p)});
       grid.push_back(g);
@@ -236,7 +237,7 @@ class CellSurface {
     Vec3 start = Vec3::Zero();
     for (const Vec3& x : polygons()[cut]) start += x / static_cast<double>(polygons()[cut].size());
     if (normal(cut).dot(direction) > 0 && touches_another(cut, start)) return;  // what lies before it is the other's
-    const double winding = inside_.winding(start + kShort * direction);
+    const double winding = inside_->winding(start + kShort * direction);
     if (std::abs(winding) < kInside) return;
     double end = std::max(way_out(start, direction), 4 * kShort);
     std::size_t hit = cut;
@@ -269,7 +270,7 @@ class CellSurface {
   /// Sums the shares of the triangles; false if that is not the volume of the parts.
   bool measure_exactly(std::span<const Index> cut_parts, CellParts& parts) const {
     for (const LatticeNode& node : cell_corners(cell_)) {
-      const int winding = inside_.winding(node);
+      const int winding = inside_->winding(node);
       if (winding != 0 && winding != 1) return false;
     }
     parts.fills.assign(at(parts.count), 0.0);
@@ -286,7 +287,7 @@ class CellSurface {
     if (parts.count == 1 && is_on_surface(corners_[3])) {  // whether corner 3 is inside hangs on round-off
       double& fill = parts.fills[0];
       fill -= std::floor(fill);
-      if (std::min(fill, 1 - fill) < kRoundOff) fill = std::abs(inside_.winding(point_at(kMiddle))) < kInside ? 0 : 1;
+      if (std::min(fill, 1 - fill) < kRoundOff) fill = std::abs(inside_->winding(point_at(kMiddle))) < kInside ? 0 : 1;
     }
     for (double& fill : parts.fills) {
       if (fill < -kRoundOff || fill > 1 + kRoundOff) return false;
@@ -307,14 +308,14 @@ class CellSurface {
     parts.fills.assign(at(parts.count), 0.0);
     for (const GridPoint& point : sample_grid()) {
       const Vec3 p = point_at(point.weights);
-      if (std::abs(inside_.winding(p)) < kInside) continue;
+      if (std::abs(inside_->winding(p)) < kInside) continue;
       const Index part = parts.count == 1 ? 0 : cut_parts[nearest_cut(p)];
       parts.fills[at(part)] += 1.0 / static_cast<double>(kFillSamples);
     }
   }
 
   const LatticeSurface& surface_;
-  const SolidInside& inside_;
+  const SolidInside* inside_;
   BccCell cell_;
   std::span<const CellCut> cuts_;
   DisjointSets patches_;  ///< of cuts
@@ -324,6 +325,7 @@ class CellSurface {
 
 std::vector<Triangle> used_triangles(const LatticeSurface& surface) {
   std::vector<Triangle> used;
+  used.reserve(surface.triangles.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     if (surface.used[t]) used.push_back(surface.triangles[t]);
   return used;
@@ -351,12 +353,12 @@ int SolidInside::winding(const LatticeNode& node) const {
 
 CellParts find_cell_parts(const LatticeSurface& surface, const SolidInside& inside, const BccCell& cell,
                           std::span<const CellCut> cuts, std::span<Index> cut_parts) {
-  return CellSurface(surface, inside, cell, cuts).find(cut_parts);
+  return CellSurface(surface, &inside, cell, cuts).find(cut_parts);
 }
 
-std::size_t nearest_cut_in_cell(const LatticeSurface& surface, const SolidInside& inside, const BccCell& cell,
-                                std::span<const CellCut> cuts, const Vec3& point) {
-  return CellSurface(surface, inside, cell, cuts).nearest_cut(point);
+std::size_t nearest_cut_in_cell(const LatticeSurface& surface, const BccCell& cell, std::span<const CellCut> cuts,
+                                const Vec3& point) {
+  return CellSurface(surface, nullptr, cell, cuts).nearest_cut(point);
 }
 
 }  // namespace softreel

@@ -53,8 +53,8 @@ CellParts find_cell_parts(const LatticeSurface& surface, const SolidInside& insi
 
 /// The cut whose triangle is nearest to a point of the cell (lattice units), within the cell: a point of the solid is
 /// in its part. There must be one.
-std::size_t nearest_cut_in_cell(const LatticeSurface& surface, const SolidInside& inside, const BccCell& cell,
-                                std::span<const CellCut> cuts, const Vec3& point);
+std::size_t nearest_cut_in_cell(const LatticeSurface& surface, const BccCell& cell, std::span<const CellCut> cuts,
+                                const Vec3& point);
 
 /// Points that stand for a cell where its fill is not exact: an error of about 1 %.
 constexpr std::size_t kFillSamples = 56;

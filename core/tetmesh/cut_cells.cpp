@@ -141,6 +141,7 @@ std::vector<CellCut> cut_cells(const LatticeSurface& surface, const Threads& thr
     for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
       if (surface.used[at(t)])
         cut_triangle(surface, t, candidates, chunks[static_cast<std::size_t>(begin / kTriangleGrain)]);
+    chunks[static_cast<std::size_t>(begin / kTriangleGrain)].shrink_to_fit();
   });
   std::size_t count = 0;
   for (const auto& chunk : chunks) count += chunk.size();

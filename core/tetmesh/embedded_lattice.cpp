@@ -1,6 +1,7 @@
 #include "core/tetmesh/embedded_lattice.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/base/check.h"
@@ -38,9 +39,10 @@ struct CoverCell {
 class Cover {
  public:
   Cover(const LatticeSurface& surface, const SurfaceMesh& mesh, const Threads& threads)
-      : surface_(surface), inside_(surface, mesh, threads), cuts_(cut_cells(surface, threads)) {
+      : surface_(surface), cuts_(cut_cells(surface, threads)), inside_(std::in_place, surface, mesh, threads) {
     find_cells();
     find_parts(threads);
+    inside_.reset();  // its tree is as large as all that follows
   }
 
   EmbeddedLattice make(std::span<const CarriedPoint> points) {
@@ -51,6 +53,7 @@ class Cover {
     result.mesh.lattice = surface_.frame;
     const std::vector<Index> elements = make_elements(nodes, result.mesh);
     const std::vector<Index> vertices = vertex_elements(elements);
+    result.mesh.carriers.reserve(points.size());
     for (const CarriedPoint& point : points)
       result.mesh.carriers.push_back(point.vertex >= 0 ? vertices[at(point.vertex)] : find_element(elements, point));
     for (const CoverCell& cell : cells_) result.cut_cells += cell.count > 0 ? 1 : 0;
@@ -75,7 +78,7 @@ class Cover {
       while (end < cuts_.size() && cuts_[end].cell == cuts_[begin].cell) ++end;
       add_cell(cell_of_key(cuts_[begin].cell), static_cast<Index>(begin), static_cast<Index>(end - begin));
     }
-    for (const LatticeNode& node : inside_.nodes()) {
+    for (const LatticeNode& node : inside_->nodes()) {
       // Without a triangle all corners of a cell are inside, cube centres too; but round an open surface any may be.
       if (surface_.closed && (node[0] & 1) == 0) continue;
       for (const BccCell& cell : cells_around(node)) add_cell(cell, 0, 0);
@@ -94,7 +97,7 @@ class Cover {
     if (!surface_.closed) return;
     std::size_t count = 0;
     for (std::size_t i = 0; i < cuts_.size(); ++i) count += i == 0 || cuts_[i].cell != cuts_[i - 1].cell ? 1 : 0;
-    for (const LatticeNode& node : inside_.nodes()) count += (node[0] & 1) != 0 ? 12 : 0;
+    for (const LatticeNode& node : inside_->nodes()) count += (node[0] & 1) != 0 ? 12 : 0;
     cells_.reserve(count);
   }
 
@@ -114,7 +117,7 @@ class Cover {
       for (auto c = static_cast<std::size_t>(begin); c < static_cast<std::size_t>(end); ++c) {
         CoverCell& cell = cells_[c];
         const CellParts parts =
-            find_cell_parts(surface_, inside_, cell.cell, cell.own(std::as_const(cuts_)), cell.own(cut_copies_));
+            find_cell_parts(surface_, *inside_, cell.cell, cell.own(std::as_const(cuts_)), cell.own(cut_copies_));
         cell.corner_parts = parts.corners;
         cell.copies = parts.count;
         fills.insert(fills.end(), parts.fills.begin(), parts.fills.end());
@@ -295,17 +298,17 @@ class Cover {
     if (number < 0) return -1;
     const CoverCell& cell = cells_[at(number)];
     if (cell.copies == 1) return elements[at(cell.first_copy)];
-    const std::size_t cut = nearest_cut_in_cell(surface_, inside_, cell.cell, cell.own(cuts_), place);
+    const std::size_t cut = nearest_cut_in_cell(surface_, cell.cell, cell.own(cuts_), place);
     return elements[at(cut_copies_[at(cell.cuts) + cut])];
   }
 
   const LatticeSurface& surface_;
-  SolidInside inside_;
   std::vector<CellCut> cuts_;
-  std::vector<Index> cut_copies_;  ///< per cut: the copy it is in (first its part within the cell)
-  std::vector<CoverCell> cells_;   ///< along the lattice
-  std::vector<double> fills_;      ///< per copy: its share of the cell's volume
-  NumberTable table_;              ///< of cells, by cell_key
+  std::optional<SolidInside> inside_;  ///< until the parts are found
+  std::vector<Index> cut_copies_;      ///< per cut: the copy it is in (first its part within the cell)
+  std::vector<CoverCell> cells_;       ///< along the lattice
+  std::vector<double> fills_;          ///< per copy: its share of the cell's volume
+  NumberTable table_;                  ///< of cells, by cell_key
   LatticeNodeSet lattice_nodes_;
 };
 

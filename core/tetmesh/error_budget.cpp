@@ -150,6 +150,8 @@ class Filling {
         continue;
       }
       if (last) learn_yield(*last, count);
+      last.reset();                  // before there are the next
+      if (mendings == 0) best = {};  // what met the count is kept until something better has
       last = find_refinement(filling.stuffed, count);
       best = {std::move(filling), count, true};
       if (is_too_many || is_hopeless(count)) break;

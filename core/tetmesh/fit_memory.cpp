@@ -33,7 +33,9 @@ void FitMemory::add(const Vec3& before, const Vec3& after) {
 void FitMemory::set_sample_faces(const std::vector<std::array<Vec3, 3>>& faces,
                                  const std::vector<Index>& sample_faces) {
   std::vector<Index> numbers;
+  numbers.reserve(faces.size());
   for (const auto& corners : faces) numbers.push_back(face_keys_.insert(face_key(corners)).first);
+  sample_faces_.reserve(sample_faces.size());
   for (const Index face : sample_faces) sample_faces_.push_back(numbers[static_cast<std::size_t>(face)]);
 }
 

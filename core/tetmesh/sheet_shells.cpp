@@ -1,5 +1,6 @@
 #include "core/tetmesh/sheet_shells.h"
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -50,7 +51,22 @@ class Skin {
     surface_.triangles.push_back({lower[k], upper[next], upper[k]});
   }
 
+  /// Whether two triangles that share an edge, welded vertices low and high, meet at it on both sides. At a sharp fold
+  /// they may take the one vertex's normal for the same side and the other's for different ones.
+  bool go_on(const Triangle& s, const Triangle& t, Index low, Index high) {
+    const std::array<Index, 2> upper = edge_of(s, low, high, true);
+    const bool same = edge_of(t, low, high, true) == upper;
+    return runs_forward(s, low, high) == runs_forward(t, low, high) ? edge_of(t, low, high, false) == upper : same;
+  }
+
  private:
+  static std::size_t corner_of(const Triangle& t, Index v) { return t[0] == v ? 0 : t[1] == v ? 1 : 2; }
+  static bool runs_forward(const Triangle& t, Index low, Index high) { return t[(corner_of(t, low) + 1) % 3] == high; }
+  std::array<Index, 2> edge_of(const Triangle& t, Index low, Index high, bool upper) {
+    const Triangle side = side_of(t, area_of(surface_, t), upper);
+    return {side[corner_of(t, low)], side[corner_of(t, high)]};
+  }
+
   /// Corners of a triangle on the side that its own normal points to, or on the other one.
   Triangle side_of(const Triangle& t, const Vec3& area, bool upper) {
     Triangle corners;
@@ -91,7 +107,8 @@ std::int64_t thicken_sheets(SurfaceMesh& surface, const SurfaceParts& parts, dou
   Skin skin(thick, normals, thickness);
   for (const Triangle& t : sheets) skin.add_sides(t);
   for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
-    if (edge.size() == 2) return;  // the neighbour goes on
+    const Triangle &first = sheets[at(edge[0].triangle)], &second = sheets[at(edge.back().triangle)];
+    if (edge.size() == 2 && skin.go_on(first, second, edge[0].low, edge[0].high)) return;
     for (const HalfEdge& side : edge) {
       const Triangle& t = sheets[at(side.triangle)];
       for (std::size_t k = 0; k < 3; ++k)

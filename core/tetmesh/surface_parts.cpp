@@ -100,6 +100,7 @@ SurfaceParts find_parts(const SurfaceMesh& surface) {
   join_near_rims(surface, rims, sets);
   SurfaceParts found;
   std::vector<Index> number(surface.positions.size(), -1), first_vertices;
+  found.triangle_parts.reserve(welded.size());
   for (const Triangle& triangle : welded) {
     Index& part = number[at(sets.root(triangle[0]))];
     if (part < 0) {

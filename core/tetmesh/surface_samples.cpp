@@ -40,9 +40,6 @@ SurfaceSamples::SurfaceSamples(const SurfaceMesh& surface, const std::vector<Ind
                                Repeats repeats)
     : surface_(surface), repeats_(repeats) {
   auto table = std::make_shared<Table>();
-  table->grids.reserve(order.size());
-  std::vector<std::int64_t> sizes;
-  sizes.reserve(order.size());
   std::vector<bool> taken(surface.positions.size(), false);
   KeyIndex taken_edges;
   std::int64_t count = 0;
@@ -59,15 +56,20 @@ SurfaceSamples::SurfaceSamples(const SurfaceMesh& surface, const std::vector<Ind
       if (taken_edges.insert(key).second) grid.edges[grid.new_edges++] = k;
     }
     const std::int64_t steps = grid.steps;
-    sizes.push_back(grid.new_corners +
-                    (repeats == kEach ? grid_size(steps) : grid.new_edges * (steps - 1) + inside_size(steps)));
-    count += sizes.back();
+    const std::int64_t size =
+        grid.new_corners + (repeats == kEach ? grid_size(steps) : grid.new_edges * (steps - 1) + inside_size(steps));
+    if (size == 0) continue;  // about half of the triangles of a fine surface: there are two for each vertex
+    count += size;
     if (count > std::numeric_limits<Index>::max()) throw std::bad_alloc();  // more than there is an index for
     table->grids.push_back(grid);
   }
-  table->grids_of.reserve(static_cast<std::size_t>(count));
-  for (std::size_t g = 0; g < sizes.size(); ++g)
-    table->grids_of.insert(table->grids_of.end(), static_cast<std::size_t>(sizes[g]), static_cast<Index>(g));
+  table->grids.shrink_to_fit();
+  table->grids_of.resize(static_cast<std::size_t>(count));
+  for (std::size_t g = 0; g < table->grids.size(); ++g) {
+    const bool is_last = g + 1 == table->grids.size();
+    const auto end = is_last ? table->grids_of.end() : table->grids_of.begin() + table->grids[g + 1].first;
+    std::fill(table->grids_of.begin() + table->grids[g].first, end, static_cast<Index>(g));
+  }
   table_ = std::move(table);
 }
 

@@ -39,7 +39,7 @@ class SurfaceSamples {
     std::array<std::uint8_t, 3> corners{}, edges{};  ///< which; edge k goes from corner k to the next
   };
   struct Table {
-    std::vector<Grid> grids;
+    std::vector<Grid> grids;      ///< of the triangles that have samples
     std::vector<Index> grids_of;  ///< per sample
   };
 

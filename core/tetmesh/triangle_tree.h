@@ -43,6 +43,8 @@ class TriangleTree {
   Nearest nearest_from(const Vec3& p, Index place, double squared_enough = -1, double squared_limit = 1e300) const;
 
   const std::vector<Node>& nodes() const { return nodes_; }
+  /// Gives back the room of the nodes, for one who has what it needs of them: only order() and corners() remain.
+  void drop_nodes() { std::vector<Node>().swap(nodes_); }
   /// Numbers of the triangles in the order of the leaves.
   const std::vector<Index>& order() const { return order_; }
   /// Corners of the triangle at a place in order().

@@ -45,9 +45,10 @@ WindingNumber::WindingNumber(const std::vector<Vec3>& points, const std::vector<
     }
     const Vec3 center = weight > 0 ? Vec3(moment / weight) : Vec3(0.5 * (node.min + node.max));
     const double radius = (center - node.min).cwiseMax(node.max - center).norm();
-    dipoles_[n] = {center, area, kAccuracy * kAccuracy * radius * radius};
+    dipoles_[n] = {center, area, kAccuracy * kAccuracy * radius * radius, node.begin, node.end, node.right};
     weights[n] = weight;
   }
+  tree_.drop_nodes();
 }
 
 double WindingNumber::operator()(const Vec3& p) const {
@@ -65,13 +66,12 @@ double WindingNumber::operator()(const Vec3& p) const {
       far += dipole.area.dot(r) / (squared * std::sqrt(squared));
       continue;
     }
-    const TriangleTree::Node& node = tree_.nodes()[n];
-    if (!node.is_leaf()) {
-      stack[depth++] = node.right;
+    if (dipole.right != 0) {
+      stack[depth++] = dipole.right;
       stack[depth++] = static_cast<Index>(n) + 1;
       continue;
     }
-    for (Index i = node.begin; i < node.end; ++i) {
+    for (Index i = dipole.begin; i < dipole.end; ++i) {
       const auto& [a, b, c] = tree_.corners(i);
       half_angles += half_solid_angle(a - p, b - p, c - p);
     }

@@ -20,14 +20,16 @@ class WindingNumber {
   double operator()(const Vec3& p) const;
 
  private:
-  /// Dipole of a cluster: area-weighted normal at the area-weighted centroid, valid outside `radius`.
+  /// Dipole of a cluster, a node of the tree: area-weighted normal at the area-weighted centroid, valid outside
+  /// `radius`.
   struct Dipole {
     Vec3 center, area;
-    double squared_reach;  // (accuracy times radius) squared
+    double squared_reach;     // (accuracy times radius) squared
+    Index begin, end, right;  // as in the node
   };
 
-  TriangleTree tree_;
-  std::vector<Dipole> dipoles_;  // per node of the tree
+  TriangleTree tree_;  // its triangles; the dipoles have its nodes
+  std::vector<Dipole> dipoles_;
 };
 
 /// Whether every edge is used as often in one direction as in the other. Then winding numbers are integers, and they

@@ -25,6 +25,7 @@ std::vector<Index> drop_unused_vertices(SurfaceMesh& mesh) {
   for (const Triangle& triangle : mesh.triangles)
     for (const Index v : triangle) number[static_cast<std::size_t>(v)] = 0;
   std::vector<Vec3> used;
+  used.reserve(number.size() - static_cast<std::size_t>(std::count(number.begin(), number.end(), -1)));
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] < 0) continue;
     number[v] = static_cast<Index>(used.size());
@@ -49,6 +50,7 @@ void take_surface(const SurfaceMesh& surface, const PreparationParams& params, c
   taken.groups = surface.groups;
   for (std::size_t v = 0; v < surface.joined.size(); ++v)
     taken.positions[v] = surface.positions[static_cast<std::size_t>(surface.joined[v])];
+  prepared.carried.reserve(taken.positions.size());
   for (const Vec3& position : taken.positions) prepared.carried.push_back({position, -1});
   const std::int64_t open = params.thickness > 0 ? thicken_sheets(taken, find_parts(taken), params.thickness) : 0;
   if (open > 0)

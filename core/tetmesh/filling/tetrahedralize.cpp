@@ -333,6 +333,7 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
   if (!embedded) {  // the solids have it all
     prepared.surface = {};
     std::vector<CarriedPoint>().swap(prepared.carried);
+    std::vector<Index>().swap(prepared.parts.triangle_parts);
   }
   const Job job{prepared, solids, params, name, threads, log, times};
   Filling filling = fill(job);
