@@ -64,7 +64,7 @@ TEST_F(FillingMemory, OfGradedSizesIsBounded) {
   EXPECT_LT(peak_bytes_a_tet({.edge = 0.055, .graded = true}), 300);
 }
 
-/// Above the 300 that are wanted: 200 to 260 are in use at once, the rest is what the allocator keeps between fillings.
+/// Above the 300 that are wanted: it keeps what was reached.
 TEST_F(FillingMemory, OfAGradedCountIsBounded) {
   for (const std::int64_t tets : {40000, 100000})
     EXPECT_LT(peak_bytes_a_tet({.tets = tets, .graded = true}), 360) << tets << " wanted";
