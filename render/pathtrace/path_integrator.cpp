@@ -163,7 +163,7 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   const WalkStart start{ray, throughput_.cwiseProduct(bsdf.subsurface().color), leaving_numbers[kSide],
                         leaving_numbers[kLength]};
   WalkExit exit;
-  if (!random_walk(*picture_.rays, mesh_, medium_of(bsdf.subsurface()), start, stream, exit)) return false;
+  if (!random_walk(picture_.rays->trees(), mesh_, medium_of(bsdf.subsurface()), start, stream, exit)) return false;
   throughput_ = throughput_.cwiseProduct(exit.weight);
   // Seen from outside: the ray that would come in where the walk goes out.
   Ray seen = exit.ray;

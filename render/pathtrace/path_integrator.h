@@ -14,8 +14,8 @@
 #include "render/pathtrace/direct_light.h"
 #include "render/pathtrace/light_set.h"
 #include "render/pathtrace/ray_cone.h"
-#include "render/pathtrace/ray_scene.h"
 #include "render/pathtrace/sampler.h"
+#include "render/pathtrace/scene_rays.h"
 #include "render/pathtrace/surface_point.h"
 #include "render/scene/ground_mesh.h"
 
@@ -23,7 +23,7 @@ namespace softreel {
 
 /// A scene made ready for paths. Borrows the scene's meshes and `rays`.
 struct Picture {
-  const RayScene* rays = nullptr;
+  const SceneRays* rays = nullptr;
   std::vector<const MotionMesh*> meshes;                 ///< in the order of `rays`
   std::vector<Bsdf> bsdfs;                               ///< per mesh; last, if there is a pattern: its second tone
   std::vector<Bsdf> blurred;                             ///< the same, as seen by way of a wide scattering

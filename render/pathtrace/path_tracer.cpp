@@ -296,11 +296,16 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   Picture picture = make_picture(scene, params, ground);
   const LightSet lights(scene);
   picture.lights = &lights;
-  picture.rays = parts_->rays.get();
+  // Light that scatters inside a body needs a tree of it.
+  const bool ground_apart = scene.ground && !(ground.appearance.subsurface > 0);
+  std::vector<const MotionMesh*> bodies = picture.meshes;
+  if (ground_apart) bodies.pop_back();
   {
     const ScopedStage stage(parts_->times, "render/build");
-    parts_->threads.run([&] { parts_->rays->build(picture.meshes, expected_paths(params)); });
+    parts_->threads.run([&] { parts_->rays->build(bodies, expected_paths(params)); });
   }
+  const SceneRays rays = ground_apart ? SceneRays(*parts_->rays, bodies, ground) : SceneRays(*parts_->rays);
+  picture.rays = &rays;
   const ScopedStage stage(parts_->times, "render/trace");
   const ChannelLayout channels(scene, picture, params.all_channels(), params.width, params.height);
   Image image = empty_image(params, channels, picture.catches_shadows);
