@@ -292,12 +292,14 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   CHECK(window_of(params).width() > 0);
   CHECK(window_of(params).height() > 0);
   check_meshes(scene);
-  const MotionMesh ground = scene.ground ? ground_mesh(*scene.ground, scene.camera) : MotionMesh{};
+  // Light that scatters inside a body needs a tree of it, and a tree cells that are not long.
+  const bool ground_apart = scene.ground && !(scene.ground->appearance.subsurface > 0);
+  const MotionMesh ground = !scene.ground  ? MotionMesh{}
+                            : ground_apart ? ground_mesh(*scene.ground, scene.camera, 1)
+                                           : ground_mesh(*scene.ground, scene.camera);
   Picture picture = make_picture(scene, params, ground);
   const LightSet lights(scene);
   picture.lights = &lights;
-  // Light that scatters inside a body needs a tree of it.
-  const bool ground_apart = scene.ground && !(ground.appearance.subsurface > 0);
   std::vector<const MotionMesh*> bodies = picture.meshes;
   if (ground_apart) bodies.pop_back();
   {

@@ -70,13 +70,12 @@ void SweptGround::cross_straight(const Line& line, std::size_t first, std::size_
 }
 
 void SweptGround::cross_between(const Line& line, std::size_t first, std::size_t last, Crossing& nearest) const {
-  const bool low_side = side(line, first) < 0;
-  while (last - first > 1) {
-    const std::size_t middle = first + (last - first) / 2;
-    if ((side(line, middle) < 0) == low_side)
-      first = middle;
-    else
-      last = middle;
+  const bool first_side = side(line, first) < 0;
+  // Without branches: where to go on is as good as chance.
+  for (std::size_t rows = last - first; rows > 1;) {
+    const std::size_t half = rows / 2;
+    first += (side(line, first + half) < 0) == first_side ? half : 0;
+    rows -= half;
   }
   const Vec2f edge = profile_[first + 1] - profile_[first], to = profile_[first] - line.origin;
   const float sine = cross(line.direction, edge);
