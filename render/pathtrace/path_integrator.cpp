@@ -79,6 +79,17 @@ void PathIntegrator::collect(const Ray& ray, bool hit, float distance) {
   add(found);
 }
 
+void PathIntegrator::collect_last(const Ray& ray) {
+  if (picture_.lights->area_lights_along(ray.origin, ray.direction, ray.max_distance, origin_).maxCoeff() > 0) {
+    RayHit hit;
+    const bool found = picture_.rays->intersect(ray, hit, false);
+    collect(ray, found, hit.distance);
+    return;
+  }
+  const Vec3f beyond = picture_.lights->surroundings(ray.direction, origin_);
+  if (beyond.maxCoeff() > 0 && !picture_.rays->occluded(ray, false)) add(beyond);
+}
+
 void PathIntegrator::catch_shadow(const RayHit& hit, const Ray& ray) {
   const SurfacePoint point = surface_point(*picture_.meshes.back(), hit, ray);
   const CaughtLight light = caught_light(picture_, point, time_, sampler_.numbers(sample_, 1));
@@ -196,6 +207,10 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
   Ray ray = camera_ray;
   time_ = ray.time;
   for (;;) {
+    if (bounces_ > 0 && bounces_ == picture_.max_bounces && !picture_.has_emission) {
+      collect_last(ray);
+      break;
+    }
     RayHit hit;
     const bool found = picture_.rays->intersect(ray, hit, bounces_ == 0);
     collect(ray, found, hit.distance);

@@ -241,6 +241,7 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
     picture.colored.push_back(
         mesh->coloring.empty() ? nullptr : std::make_unique<ColoredSurface>(*mesh, params.caustic_roughness));
     picture.has_textures = picture.has_textures || !mesh->coloring.maps.empty();
+    picture.has_emission = picture.has_emission || mesh->appearance.emission.maxCoeff() > 0;
   }
   picture.pixel =
       2 * camera_frame(scene.camera, params.width, params.height).half_width / static_cast<float>(params.width);

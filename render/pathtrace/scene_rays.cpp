@@ -33,8 +33,7 @@ bool SceneRays::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
 bool SceneRays::occluded(const Ray& ray, bool coherent) const {
   if (!ground_) return trees_.occluded(ray, coherent);
   if (bodies_.may_meet(ray) && trees_.occluded(ray, coherent)) return true;
-  RayHit hit;
-  return ground_->intersect(ray, hit);
+  return ground_->blocks(ray);
 }
 
 }  // namespace softreel

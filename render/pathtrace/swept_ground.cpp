@@ -107,16 +107,39 @@ void SweptGround::cross_bend(const Line& line, int straight_crossings, Crossing&
   }
 }
 
-bool SweptGround::intersect(const Ray& ray, RayHit& hit) const {
-  const Line line{{ray.origin.dot(along_), ray.origin.y()},
-                  {ray.direction.dot(along_), ray.direction.y()},
-                  ray.origin.dot(across_),
-                  ray.direction.dot(across_)};
-  Crossing nearest{ray.max_distance, 0, -1};
+SweptGround::Line SweptGround::line_of(const Ray& ray) const {
+  return {{ray.origin.dot(along_), ray.origin.y()},
+          {ray.direction.dot(along_), ray.direction.y()},
+          ray.origin.dot(across_),
+          ray.direction.dot(across_)};
+}
+
+SweptGround::Crossing SweptGround::nearest_crossing(const Line& line, float max_distance) const {
+  Crossing nearest{max_distance, 0, -1};
+  const bool inside = is_well_inside(line.origin);
+  // Up and towards the camera there is no ground.
+  if (inside && line.direction.y() >= 0 && line.direction.x() <= 0) return nearest;
   int found = 0;
-  cross_straight(line, 0, bend_, 0, found, nearest);
-  cross_straight(line, wall_, profile_.size() - 1, 1, found, nearest);
-  cross_bend(line, found, nearest);
+  if (!inside || line.direction.y() < 0) cross_straight(line, 0, bend_, 0, found, nearest);
+  if (inside && found > 0) return nearest;
+  if (!inside || line.direction.x() > 0) cross_straight(line, wall_, profile_.size() - 1, 1, found, nearest);
+  if (inside && found > 0) return nearest;
+  cross_bend(line, inside ? 1 : found, nearest);
+  return nearest;
+}
+
+bool SweptGround::blocks(const Ray& ray) const {
+  const Line line = line_of(ray);
+  // Nothing of what is hollow is between two points inside.
+  if (std::isfinite(ray.max_distance) && is_well_inside(line.origin) &&
+      is_well_inside(line.origin + ray.max_distance * line.direction))
+    return false;
+  return nearest_crossing(line, ray.max_distance).share >= 0;
+}
+
+bool SweptGround::intersect(const Ray& ray, RayHit& hit) const {
+  const Line line = line_of(ray);
+  const Crossing nearest = nearest_crossing(line, ray.max_distance);
   if (nearest.share < 0) return false;
   hit.distance = nearest.distance;
   const float place = line.across + nearest.distance * line.across_direction;

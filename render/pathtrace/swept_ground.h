@@ -18,6 +18,8 @@ class SweptGround {
 
   /// Nearest triangle on a ray, from either side. hit.mesh is left alone.
   bool intersect(const Ray& ray, RayHit& hit) const;
+  /// Whether the ray meets it before its end.
+  bool blocks(const Ray& ray) const;
 
  private:
   /// Of a ray: m, along, up and across.
@@ -32,6 +34,14 @@ class SweptGround {
     float share;
   };
 
+  Line line_of(const Ray& ray) const;
+  /// Whether a point is on the hollow side of the profile, which a line leaves once; false also of some that are.
+  bool is_well_inside(const Vec2f& point) const {
+    const Vec2f &bend = profile_[bend_], &wall = profile_[wall_];
+    return point.y() > bend.y() && point.x() < wall.x() && (point.x() <= bend.x() || point.y() >= wall.y());
+  }
+  /// Where the line meets the profile first; share is below 0 if nowhere.
+  Crossing nearest_crossing(const Line& line, float max_distance) const;
   /// The profile's two straight parts, from row `first` to row `last`. axis: the one that they are level on.
   void cross_straight(const Line& line, std::size_t first, std::size_t last, int axis, int& found,
                       Crossing& nearest) const;

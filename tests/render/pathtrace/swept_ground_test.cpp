@@ -72,6 +72,11 @@ void expect_agreement(const MotionMesh& mesh, int count) {
     RayHit hit;
     const bool found = ground.intersect(ray, hit);
     ASSERT_EQ(found, std::isfinite(expected)) << k;
+    ASSERT_EQ(ground.blocks(ray), found) << k;
+    for (const float end : {0.5f, 2.0f, 8.0f}) {
+      if (std::abs(static_cast<double>(end) - expected) < 1e-3) continue;
+      ASSERT_EQ(ground.blocks({ray.origin, ray.direction, end, 0}), expected < static_cast<double>(end)) << k;
+    }
     ++(found ? hits : misses);
     if (!found) continue;
     ASSERT_NEAR(static_cast<double>(hit.distance), expected, 2e-5 * (1 + expected)) << k;
