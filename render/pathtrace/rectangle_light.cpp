@@ -88,16 +88,18 @@ bool RectangleLight::sample(const Vec3f& p, const Vec2f& u, LightSample& sample)
   const float au = u.x() * s.angle + s.k;
   float sine = 0, cosine = 0;
   sin_cos(au, sine, cosine);
-  const float fu = (cosine * s.b0 - s.b1) / sine;
-  const float cu = std::clamp(std::copysign(1.0f, fu) / std::sqrt(fu * fu + s.b0 * s.b0), -1.0f, 1.0f);
-  const float xu = std::clamp(-(cu * s.z0) / std::sqrt(std::max(1e-12f, 1 - cu * cu)), s.x0, s.x1);
-  const float d2 = xu * xu + s.z0 * s.z0;
+  // The paper's f_u, c_u and x_u at once: as they stand there they take four more roots and divisions.
+  const float rise = cosine * s.b0 - s.b1, z2 = s.z0 * s.z0;
+  const float squared = std::max(rise * rise - z2 / (z2 + s.y0 * s.y0) * sine * sine, 1e-12f * sine * sine + 1e-30f);
+  const float reach = -s.z0 * std::copysign(sine, sine * rise) / std::sqrt(squared);
+  const float xu = std::clamp(reach, s.x0, s.x1);
+  const float d2 = xu * xu + z2;
   const float h0 = s.y0 / std::sqrt(d2 + s.y0 * s.y0), h1 = s.y1 / std::sqrt(d2 + s.y1 * s.y1);
   const float hv = h0 + u.y() * (h1 - h0);
-  const float yv = hv * hv < 1 - 1e-6f ? hv * std::sqrt(d2) / std::sqrt(1 - hv * hv) : s.y1;
+  const float yv = hv * hv < 1 - 1e-6f ? hv * std::sqrt(d2 / (1 - hv * hv)) : s.y1;
   const Vec3f to = xu * x_ + yv * y_ - height * normal_;
-  sample.distance = to.norm();
-  sample.direction = to / sample.distance;
+  sample.distance = std::sqrt(d2 + yv * yv);
+  sample.direction = to * (1 / sample.distance);
   sample.pdf = 1 / s.angle;
   return true;
 }
