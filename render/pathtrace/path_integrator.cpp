@@ -213,14 +213,21 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     }
     RayHit hit;
     const bool found = picture_.rays->intersect(ray, hit, bounces_ == 0);
-    collect(ray, found, hit.distance);
-    if (!found) break;
+    if (!found) {
+      collect(ray, false, 0);
+      break;
+    }
     mesh_ = hit.mesh;
+    const MotionMesh& mesh = *picture_.meshes[static_cast<std::size_t>(hit.mesh)];
+    prefetch_triangle(mesh, hit);
+    collect(ray, true, hit.distance);
+    prefetch_corners(mesh, hit, ray);
     if (bounces_ == 0 && picture_.catches_shadows && hit.mesh + 1 == static_cast<Index>(picture_.meshes.size())) {
       catch_shadow(hit, ray);
       break;
     }
-    SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
+    const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(bounces_ + 1));
+    SurfacePoint point = surface_point(mesh, hit, ray);
     const Bsdf& bsdf = bsdf_at(hit, point, ray);
     if (bounces_ == 0) record_first_hit(hit, point, bsdf);
     if (point.inside && bsdf.transmits())
@@ -228,7 +235,7 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     if (!point.inside && bsdf.emission().maxCoeff() > 0)
       add(picture_.lights->emission_weight(ray, hit, origin_) * bsdf.emission());
     if (bounces_ == picture_.max_bounces) break;
-    const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(++bounces_));
+    ++bounces_;
     const ShadingFrame frame(point.shading_normal);
     const BsdfView view = bsdf.seen_from(frame.to_local(-ray.direction), point.inside);
     // What the camera sees directly makes most of the noise: few lights are all sampled there.

@@ -55,6 +55,16 @@ MeshMoment moment_of(const MotionMesh& mesh, const Ray& ray) {
   return {step, at - static_cast<float>(step)};
 }
 
+void prefetch_corners(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) {
+  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(hit.triangle)];
+  const std::size_t step = moment_of(mesh, ray).step, last = mesh.times.size() - 1;
+  for (std::size_t k = step; k <= std::min(step + 1, last); ++k)
+    for (const Index corner : triangle) {
+      __builtin_prefetch(mesh.times[k].positions.data() + corner);
+      if (!mesh.times[k].normals.empty()) __builtin_prefetch(mesh.times[k].normals.data() + corner);
+    }
+}
+
 Corners hit_corners(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) {
   return moving_corners(mesh, &MotionMesh::Time::positions, mesh.triangles[static_cast<std::size_t>(hit.triangle)],
                         moment_of(mesh, ray));
