@@ -10,7 +10,7 @@ namespace softreel {
 /// The triangles of ground_mesh, found by arithmetic: all rows of its vertices are the same line, moved along a profile
 /// in the plane of the along and up axes. The profile bends one way only and by a right angle at most, so that a line
 /// meets it twice at most, and its bent part by bisection. Most rays of a picture meet a studio's backdrop: in a tree
-/// of its own it took two thirds of the tracing of presets/first_pull.toml.
+/// it took a quarter of the time of presets/first_pull.toml.
 class SweptGround {
  public:
   /// mesh: as ground_mesh makes it.
