@@ -126,14 +126,16 @@ LobeShares Bsdf::shares(const BsdfView& view) const {
   }
   const float total = p.reflection + p.cosine + p.glass + (p.subsurface + p.sheen + p.coat);
   if (!(total > 0)) return {};
-  return {p.sheen / total,  p.coat / total,       p.reflection / total,
-          p.cosine / total, p.subsurface / total, p.glass / total};
+  const float scale = 1 / total;
+  return {p.sheen * scale,  p.coat * scale,       p.reflection * scale,
+          p.cosine * scale, p.subsurface * scale, p.glass * scale};
 }
 
 Vec3f Bsdf::cosine_lobe(const BsdfView& view, float cos_i) const {
   constexpr float kInvPi = 1 / kPi;
   const Vec2f ei = ggx_albedo_.at(cos_i);
-  Vec3f sum = metal_return_ * ((view.passed - view.e.sum()) * (passed(cos_i) - ei.sum()));
+  Vec3f sum = Vec3f::Zero();
+  if (most_returned_ > 0) sum = metal_return_ * ((view.passed - view.e.sum()) * (passed(cos_i) - ei.sum()));
   sum += diffuse(view.inside) * (diffuse_scale_ * view.diffuse_passed * diffuse_passed(cos_i, ei));
   return sum * (cos_i * kInvPi);
 }

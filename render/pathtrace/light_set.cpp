@@ -1,5 +1,6 @@
 #include "render/pathtrace/light_set.h"
 
+#include <array>
 #include <limits>
 
 #include <fmt/format.h>
@@ -13,6 +14,8 @@ namespace {
 /// More lamps than these are chosen from by a tree: by steps that grow with the logarithm of their number. For few,
 /// one rough irradiance each is the better choice and as quick.
 constexpr std::size_t kFewLamps = 16;
+/// Lights whose importance is not computed twice.
+constexpr std::size_t kKeptImportances = 8;
 
 TreeReceiver in_tree(const Receiver& receiver) {
   return {receiver.position, receiver.normal, receiver.both_sides};
@@ -135,12 +138,17 @@ bool LightSet::sample(const Receiver& receiver, float choice, const Vec2f& u, Li
   float share = 1;
   if (n > 1) {
     float sum = 0;
-    for (std::size_t k = 0; k < n; ++k) sum += importance(k, receiver);
+    std::array<float, kKeptImportances> kept;
+    for (std::size_t k = 0; k < n; ++k) {
+      const float part = importance(k, receiver);
+      if (k < kKeptImportances) kept[k] = part;
+      sum += part;
+    }
     if (!(sum > 0)) return false;
     float below = 0, start = 0;
     const float target = choice * sum;
     for (std::size_t k = 0; k < n; ++k) {
-      const float part = importance(k, receiver);
+      const float part = k < kKeptImportances ? kept[k] : importance(k, receiver);
       if (part <= 0) continue;
       chosen = k;
       share = part / sum;

@@ -79,6 +79,17 @@ void PathIntegrator::collect(const Ray& ray, bool hit, float distance) {
   add(found);
 }
 
+void PathIntegrator::collect_last(const Ray& ray) {
+  if (picture_.lights->area_lights_along(ray.origin, ray.direction, ray.max_distance, origin_).maxCoeff() > 0) {
+    RayHit hit;
+    const bool found = picture_.rays->intersect(ray, hit, false);
+    collect(ray, found, hit.distance);
+    return;
+  }
+  const Vec3f beyond = picture_.lights->surroundings(ray.direction, origin_);
+  if (beyond.maxCoeff() > 0 && !picture_.rays->occluded(ray, false)) add(beyond);
+}
+
 void PathIntegrator::catch_shadow(const RayHit& hit, const Ray& ray) {
   const SurfacePoint point = surface_point(*picture_.meshes.back(), hit, ray);
   const CaughtLight light = caught_light(picture_, point, time_, sampler_.numbers(sample_, 1));
@@ -163,7 +174,7 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   const WalkStart start{ray, throughput_.cwiseProduct(bsdf.subsurface().color), leaving_numbers[kSide],
                         leaving_numbers[kLength]};
   WalkExit exit;
-  if (!random_walk(*picture_.rays, mesh_, medium_of(bsdf.subsurface()), start, stream, exit)) return false;
+  if (!random_walk(picture_.rays->trees(), mesh_, medium_of(bsdf.subsurface()), start, stream, exit)) return false;
   throughput_ = throughput_.cwiseProduct(exit.weight);
   // Seen from outside: the ray that would come in where the walk goes out.
   Ray seen = exit.ray;
@@ -196,16 +207,27 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
   Ray ray = camera_ray;
   time_ = ray.time;
   for (;;) {
+    if (bounces_ > 0 && bounces_ == picture_.max_bounces && !picture_.has_emission) {
+      collect_last(ray);
+      break;
+    }
     RayHit hit;
     const bool found = picture_.rays->intersect(ray, hit, bounces_ == 0);
-    collect(ray, found, hit.distance);
-    if (!found) break;
+    if (!found) {
+      collect(ray, false, 0);
+      break;
+    }
     mesh_ = hit.mesh;
+    const MotionMesh& mesh = *picture_.meshes[static_cast<std::size_t>(hit.mesh)];
+    prefetch_triangle(mesh, hit);
+    collect(ray, true, hit.distance);
+    prefetch_corners(mesh, hit, ray);
     if (bounces_ == 0 && picture_.catches_shadows && hit.mesh + 1 == static_cast<Index>(picture_.meshes.size())) {
       catch_shadow(hit, ray);
       break;
     }
-    SurfacePoint point = surface_point(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit, ray);
+    const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(bounces_ + 1));
+    SurfacePoint point = surface_point(mesh, hit, ray);
     const Bsdf& bsdf = bsdf_at(hit, point, ray);
     if (bounces_ == 0) record_first_hit(hit, point, bsdf);
     if (point.inside && bsdf.transmits())
@@ -213,7 +235,7 @@ Vec3f PathIntegrator::trace(const Ray& camera_ray) {
     if (!point.inside && bsdf.emission().maxCoeff() > 0)
       add(picture_.lights->emission_weight(ray, hit, origin_) * bsdf.emission());
     if (bounces_ == picture_.max_bounces) break;
-    const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(++bounces_));
+    ++bounces_;
     const ShadingFrame frame(point.shading_normal);
     const BsdfView view = bsdf.seen_from(frame.to_local(-ray.direction), point.inside);
     // What the camera sees directly makes most of the noise: few lights are all sampled there.

@@ -14,8 +14,8 @@
 #include "render/pathtrace/direct_light.h"
 #include "render/pathtrace/light_set.h"
 #include "render/pathtrace/ray_cone.h"
-#include "render/pathtrace/ray_scene.h"
 #include "render/pathtrace/sampler.h"
+#include "render/pathtrace/scene_rays.h"
 #include "render/pathtrace/surface_point.h"
 #include "render/scene/ground_mesh.h"
 
@@ -23,7 +23,7 @@ namespace softreel {
 
 /// A scene made ready for paths. Borrows the scene's meshes and `rays`.
 struct Picture {
-  const RayScene* rays = nullptr;
+  const SceneRays* rays = nullptr;
   std::vector<const MotionMesh*> meshes;                 ///< in the order of `rays`
   std::vector<Bsdf> bsdfs;                               ///< per mesh; last, if there is a pattern: its second tone
   std::vector<Bsdf> blurred;                             ///< the same, as seen by way of a wide scattering
@@ -32,6 +32,7 @@ struct Picture {
   float pixel = 0;                       ///< m, edge of a pixel of the window one metre ahead of the camera
   float cone_spread = 0;                 ///< of a camera ray's cone
   bool has_textures = false;             ///< anything asks how wide a ray's cone is
+  bool has_emission = false;             ///< any mesh shines
   std::optional<GroundPattern> pattern;  ///< on the last mesh
   bool catches_shadows = false;          ///< the last mesh is a shadow catcher
   const LightSet* lights = nullptr;
@@ -69,6 +70,8 @@ class PathIntegrator {
   void record_first_hit(const RayHit& hit, const SurfacePoint& point, const Bsdf& bsdf);
   /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
   void collect(const Ray& ray, bool hit, float distance);
+  /// The same of a path's last ray where no mesh shines: what it hits need not be found.
+  void collect_last(const Ray& ray);
   void add(const Vec3f& radiance);
   /// What the camera sees of the shadow catcher: nothing but its alpha.
   void catch_shadow(const RayHit& hit, const Ray& ray);

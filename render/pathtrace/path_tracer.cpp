@@ -241,6 +241,7 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
     picture.colored.push_back(
         mesh->coloring.empty() ? nullptr : std::make_unique<ColoredSurface>(*mesh, params.caustic_roughness));
     picture.has_textures = picture.has_textures || !mesh->coloring.maps.empty();
+    picture.has_emission = picture.has_emission || mesh->appearance.emission.maxCoeff() > 0;
   }
   picture.pixel =
       2 * camera_frame(scene.camera, params.width, params.height).half_width / static_cast<float>(params.width);
@@ -292,15 +293,22 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   CHECK(window_of(params).width() > 0);
   CHECK(window_of(params).height() > 0);
   check_meshes(scene);
-  const MotionMesh ground = scene.ground ? ground_mesh(*scene.ground, scene.camera) : MotionMesh{};
+  // Light that scatters inside a body needs a tree of it, and a tree cells that are not long.
+  const bool ground_apart = scene.ground && !(scene.ground->appearance.subsurface > 0);
+  const MotionMesh ground = !scene.ground  ? MotionMesh{}
+                            : ground_apart ? ground_mesh(*scene.ground, scene.camera, 1)
+                                           : ground_mesh(*scene.ground, scene.camera);
   Picture picture = make_picture(scene, params, ground);
   const LightSet lights(scene);
   picture.lights = &lights;
-  picture.rays = parts_->rays.get();
+  std::vector<const MotionMesh*> bodies = picture.meshes;
+  if (ground_apart) bodies.pop_back();
   {
     const ScopedStage stage(parts_->times, "render/build");
-    parts_->threads.run([&] { parts_->rays->build(picture.meshes, expected_paths(params)); });
+    parts_->threads.run([&] { parts_->rays->build(bodies, expected_paths(params)); });
   }
+  const SceneRays rays = ground_apart ? SceneRays(*parts_->rays, bodies, ground) : SceneRays(*parts_->rays);
+  picture.rays = &rays;
   const ScopedStage stage(parts_->times, "render/trace");
   const ChannelLayout channels(scene, picture, params.all_channels(), params.width, params.height);
   Image image = empty_image(params, channels, picture.catches_shadows);

@@ -40,6 +40,29 @@ inline void sin_cos_eighth(float angle, float& sine, float& cosine) {
   cosine = 1.0f + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320))));
 }
 
+/// Sine and cosine of an angle within a few turns; errors below 3e-7.
+inline void sin_cos(float angle, float& sine, float& cosine) {
+  const float quarters = std::nearbyint(angle * (2 / kPi));
+  float s = 0, c = 0;
+  sin_cos_eighth((angle - quarters * 1.5703125f) - quarters * 4.83826794897e-4f, s, c);
+  const int quarter = static_cast<int>(quarters) & 3;
+  const bool swapped = (quarter & 1) != 0;
+  sine = (quarter & 2) != 0 ? -(swapped ? c : s) : (swapped ? c : s);
+  cosine = quarter == 1 || quarter == 2 ? -(swapped ? s : c) : (swapped ? s : c);
+}
+
+/// Arc cosine of x in [-1, 1]; errors below 3e-7. Without branches, for loops of it: Abramowitz and Stegun, Handbook of
+/// Mathematical Functions, 1964, 4.4.46.
+inline float arc_cosine(float x) {
+  const float a = std::min(std::abs(x), 1.0f);
+  float sum = -0.0012624911f;
+  for (const float c :
+       {0.0066700901f, -0.0170881256f, 0.0308918810f, -0.0501743046f, 0.0889789874f, -0.2145988016f, 1.5707963050f})
+    sum = sum * a + c;
+  const float angle = std::sqrt(1 - a) * sum;
+  return x < 0 ? kPi - angle : angle;
+}
+
 /// Unit square to unit disk, keeping areas and neighbourhoods: Shirley and Chiu, A Low Distortion Map Between Disk and
 /// Square, 1997.
 inline Vec2f concentric_disk(const Vec2f& u) {

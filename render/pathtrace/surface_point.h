@@ -17,6 +17,12 @@ struct MeshMoment {
 };
 MeshMoment moment_of(const MotionMesh& mesh, const Ray& ray);
 
+/// Asks for what surface_point will read, in turn: while it comes from memory there is time for other work.
+inline void prefetch_triangle(const MotionMesh& mesh, const RayHit& hit) {
+  __builtin_prefetch(mesh.triangles.data() + hit.triangle);
+}
+void prefetch_corners(const MotionMesh& mesh, const RayHit& hit, const Ray& ray);
+
 /// Where the corners of the triangle that `ray` hit are at the ray's time.
 Corners hit_corners(const MotionMesh& mesh, const RayHit& hit, const Ray& ray);
 
