@@ -5,14 +5,10 @@
 
 #include <Eigen/QR>
 
+#include "core/dynamics/inner_product.h"
+
 namespace softreel {
 namespace {
-
-double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
-}
 
 void add(double factor, std::span<const Vec3> a, std::span<Vec3> sum) {
   for (std::size_t i = 0; i < a.size(); ++i) sum[i] += factor * a[i];

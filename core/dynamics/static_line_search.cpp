@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dynamics/inner_product.h"
 #include "core/dynamics/static_solver.h"
 
 namespace softreel {
@@ -11,12 +12,6 @@ constexpr double kArmijo = 1e-4;      ///< share of the promised decrease of ene
 constexpr int kHalvings = 16;         ///< of a step in the line search
 constexpr double kLongestStep = 256;  ///< times the full step, where the tangent has negative curvature
 constexpr int kStepsAhead = 4;        ///< full ones in a row, of which only the last must have improved
-
-double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
-}
 
 }  // namespace
 

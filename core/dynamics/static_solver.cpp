@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/dynamics/flexible_gmres.h"
+#include "core/dynamics/inner_product.h"
 #include "core/dynamics/linear_system.h"
 #include "core/dynamics/pin_motion.h"
 #include "core/dynamics/rigid_modes.h"
@@ -24,12 +25,6 @@ constexpr double kBestLinearTolerance = 1e-10;
 /// softest deformation of any mesh that fits in memory, far above round-off.
 constexpr double kRigidShift = 1e-7;
 constexpr std::int64_t kElementGrain = 1024;
-
-double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
-}
 
 /// True if no position would change by more than its rounding.
 bool is_negligible(std::span<const Vec3> direction, std::span<const Vec3> positions) {

@@ -4,10 +4,11 @@
 #include <array>
 #include <utility>
 
+#include "render/preview/near_limit.h"
+
 namespace softreel {
 namespace {
 
-constexpr float kNearest = 1e-4f;        ///< least w, m: what is nearer is behind the camera
 constexpr float kLineWidth = 1.6f;       ///< pixels of a picture 720 pixels high
 constexpr float kSmallestDiameter = 3;   ///< pixels of any picture
 constexpr float kSmallestLineWidth = 1;  ///< pixels of any picture

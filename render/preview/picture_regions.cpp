@@ -5,10 +5,11 @@
 #include <map>
 #include <utility>
 
+#include "render/preview/near_limit.h"
+
 namespace softreel {
 namespace {
 
-constexpr float kNearest = 1e-4f;  ///< least w, m: what is nearer is behind the camera
 constexpr float kMapMargin =
     0.03f;  ///< by which what is shaded looks beyond the map of a light, share of half its edge
 
