@@ -6,9 +6,12 @@
 
 #include "core/elasticity/elastic_body.h"
 #include "core/elasticity/element_rotation.h"
+#include "tests/support/random.h"
 
 namespace softreel {
 namespace {
+
+using test_support::random_matrix;
 
 /// Separate tetrahedra, deformed by F and far from the origin.
 struct Scattered {
@@ -46,19 +49,12 @@ struct Scattered {
   std::vector<Quaternion> guesses;
 };
 
-Mat3 random_matrix(std::mt19937_64& random) {
-  std::normal_distribution<double> normal;
-  Mat3 m;
-  for (double& entry : m.reshaped()) entry = normal(random);
-  return m;
-}
-
 Mat3 turn(double angle) {
   return Eigen::AngleAxisd(angle, Vec3(1, -2, 3).normalized()).toRotationMatrix();
 }
 
 /// tr(R^T F), which the rotation maximises.
-double objective(const Quaternion& rotation, const Mat3& F) {
+double rotation_objective(const Quaternion& rotation, const Mat3& F) {
   return rotation.toRotationMatrix().cwiseProduct(F).sum();
 }
 
@@ -84,7 +80,7 @@ TEST(ConsistentRotations, AreAsGoodAsThoseOfTheScalarTwinOnEveryKindOfDeformatio
         deformation_gradient(scattered.shapes[e].gradients, nodes_of(scattered.tets[e], scattered.positions));
     const Quaternion scalar = find_rotation(F, Quaternion::Identity());
     EXPECT_NEAR(rotations[e].norm(), 1, 1e-14);
-    EXPECT_GE(objective(rotations[e], F), objective(scalar, F) - 1e-13 * F.norm()) << e;
+    EXPECT_GE(rotation_objective(rotations[e], F), rotation_objective(scalar, F) - 1e-13 * F.norm()) << e;
   }
 }
 

@@ -99,12 +99,12 @@ Eigen::MatrixXd dense_cycle(const TetMesh& mesh, const ElasticSystem& system, co
 TEST(Cycle, IsSymmetricAndPositiveAndLeavesPinsAtZero) {
   const TetMesh mesh = make_box({6, 3, 3}, 0.5);
   const ElasticSystem system = assemble(mesh, {}, [](const Vec3& x) { return x[0] < 1e-9; });
-  struct Choice {
+  struct CycleChoice {
     CycleKind kind;
     SmootherKind smoother;
     int sweeps;
   };
-  const Choice choices[] = {
+  const CycleChoice choices[] = {
       {CycleKind::V, SmootherKind::GaussSeidel, 1},       {CycleKind::W, SmootherKind::GaussSeidel, 1},
       {CycleKind::W, SmootherKind::GaussSeidel, 2},       {CycleKind::FullW, SmootherKind::GaussSeidel, 1},
       {CycleKind::FullW, SmootherKind::GaussSeidel, 3},   {CycleKind::FullW, SmootherKind::Chebyshev, 1},
