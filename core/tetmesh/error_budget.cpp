@@ -219,7 +219,8 @@ class Filling {
     asked.expected = done.added_tets;
     if (done.halved == 0) return any;
     if (done.narrowest > 0) narrowest_ = std::min(narrowest_, done.narrowest);
-    error_ = std::max(base_edge_ / kBaseEdge, kAhead * narrowest_);
+    // Loose pieces may have been all there was to halve: then no gap says how near this comes.
+    if (narrowest_ < 1e300) error_ = std::max(base_edge_ / kBaseEdge, kAhead * narrowest_);
     return true;
   }
 
