@@ -9,7 +9,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kAssemblyGrain = 1024;
+constexpr std::int64_t kElementGrain = 1024;
 constexpr std::int64_t kRowGrain = 256;
 
 Mat3 cross_matrix(const Vec3& v) {
@@ -86,7 +86,7 @@ void find_stiffness_terms(const ElasticBody& body, std::span<const Vec3> positio
     }
     return different;
   };
-  terms.uniform_ratio = threads.sum_chunks(static_cast<std::int64_t>(elements), kAssemblyGrain, chunk) == 0;
+  terms.uniform_ratio = threads.sum_chunks(static_cast<std::int64_t>(elements), kElementGrain, chunk) == 0;
 }
 
 StiffnessAssembler::StiffnessAssembler(const std::vector<Tet>& tets, const BlockPattern& pattern) {

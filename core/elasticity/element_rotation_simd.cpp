@@ -24,7 +24,7 @@ namespace stdx = std::experimental;
 using Lanes = stdx::fixed_size_simd<double, kRotationLanes>;
 using Mask = Lanes::mask_type;
 
-constexpr int kLaneNewtonSteps = 12;  ///< mild deformations need 3, any simple root at most 10
+constexpr int kNewtonSteps = 12;  ///< mild deformations need 3, any simple root at most 10
 
 /// Greatest absolute entry of each lane; at least the smallest normal number, so that dividing by it is safe.
 Lanes greatest_entry(const detail::Matrix9<Lanes>& A) {
@@ -50,7 +50,7 @@ Lanes upper_bound(const detail::Quartic<Lanes>& quartic, const Lanes& rayleigh) 
 Lanes greatest_root(const detail::Matrix9<Lanes>& A, const Lanes& rayleigh) {
   const detail::Quartic<Lanes> quartic = detail::davenport_quartic(A);
   Lanes root = upper_bound(quartic, rayleigh);
-  for (int step = 0; step < kLaneNewtonSteps; ++step) {
+  for (int step = 0; step < kNewtonSteps; ++step) {
     const Lanes change = newton_step(quartic, root);
     const Mask moves = change > Lanes(1e-16) * root;
     where(moves, root) = root - change;

@@ -125,7 +125,7 @@ std::vector<Index> order_by_color(const BlockPattern& pattern, std::vector<Index
   return order;
 }
 
-std::vector<Index> inverse_order(const std::vector<Index>& order) {
+std::vector<Index> inverted(const std::vector<Index>& order) {
   std::vector<Index> inverse(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) inverse[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
   return inverse;
@@ -133,7 +133,7 @@ std::vector<Index> inverse_order(const std::vector<Index>& order) {
 
 /// The pattern with rows and columns renumbered; source[b] is the old position of the mirror of new block b.
 BlockPattern permuted(const BlockPattern& pattern, const std::vector<Index>& order, std::vector<std::int64_t>& source) {
-  const std::vector<Index> number = inverse_order(order);
+  const std::vector<Index> number = inverted(order);
   BlockPattern result;
   result.columns = pattern.columns;
   source.reserve(static_cast<std::size_t>(pattern.blocks()));
@@ -155,7 +155,7 @@ BlockPattern permuted(const BlockPattern& pattern, const std::vector<Index>& ord
 
 WeightMatrix permuted(const WeightMatrix& matrix, const std::vector<Index>& row_order,
                       const std::vector<Index>& column_order) {
-  const std::vector<Index> number = inverse_order(column_order);
+  const std::vector<Index> number = inverted(column_order);
   WeightMatrix result;
   result.columns = matrix.columns;
   std::vector<std::pair<Index, double>> row;

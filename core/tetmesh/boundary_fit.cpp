@@ -14,7 +14,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kFitGrain = 256;
+constexpr std::int64_t kGrain = 256;
 
 /// A node goes no further than this towards the nearest point of the surface, and a face is drawn to no sample further
 /// away, in lengths of their longest edge: what is further away is not their own surface.
@@ -121,21 +121,20 @@ class BoundaryFit::Fit {
   /// Moves every node to the nearest point of the surface, as far as its star allows.
   void draw_to_surface() {
     std::vector<Vec3> targets(stars_.nodes.size());
-    threads_.for_chunks(static_cast<std::int64_t>(targets.size()), kFitGrain,
-                        [&](std::int64_t begin, std::int64_t end) {
-                          Index guess = -1;
-                          for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
-                            targets[b] = position(stars_.nodes[b]);
-                            const TriangleTree::Nearest found = tree_.nearest_from(targets[b], guess);
-                            probes_[b] = {found.place, found.squared_distance};
-                            guess = found.place;
-                            const Vec3* known = memory_ == nullptr ? nullptr : memory_->find(targets[b]);
-                            if (known != nullptr)
-                              targets[b] = *known;
-                            else if (found.squared_distance < std::pow(kReach * longest_edge(b), 2))
-                              targets[b] = found.point;
-                          }
-                        });
+    threads_.for_chunks(static_cast<std::int64_t>(targets.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      Index guess = -1;
+      for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+        targets[b] = position(stars_.nodes[b]);
+        const TriangleTree::Nearest found = tree_.nearest_from(targets[b], guess);
+        probes_[b] = {found.place, found.squared_distance};
+        guess = found.place;
+        const Vec3* known = memory_ == nullptr ? nullptr : memory_->find(targets[b]);
+        if (known != nullptr)
+          targets[b] = *known;
+        else if (found.squared_distance < std::pow(kReach * longest_edge(b), 2))
+          targets[b] = found.point;
+      }
+    });
     // Twice: at first neighbours may not be where they leave room.
     for (int pass = 0; pass < 2; ++pass)
       for (std::size_t b = 0; b < targets.size(); ++b) {
@@ -159,22 +158,21 @@ class BoundaryFit::Fit {
     std::vector<Index> places(triangles.size());
     for (std::size_t p = 0; p < places.size(); ++p) places[at(boundary.order()[p])] = static_cast<Index>(p);
     sample_distances_.resize(samples_.size());
-    threads_.for_chunks(static_cast<std::int64_t>(samples_.size()), kFitGrain,
-                        [&](std::int64_t begin, std::int64_t end) {
-                          Index guess = -1;
-                          for (auto s = static_cast<std::size_t>(begin); s < static_cast<std::size_t>(end); ++s) {
-                            if (const Index face = sample_faces_[s]; face >= 0) {
-                              if (!has_moved(face) && sample_distances_[s] < near_) continue;
-                              sample_distances_[s] = squared_distance(samples_[s], face);
-                              if (sample_distances_[s] < near_) continue;
-                              guess = places[at(face)];
-                            }
-                            const TriangleTree::Nearest found = boundary.nearest_from(samples_[s], guess, near_);
-                            guess = found.place;
-                            sample_faces_[s] = found.triangle;
-                            sample_distances_[s] = found.squared_distance;
-                          }
-                        });
+    threads_.for_chunks(static_cast<std::int64_t>(samples_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      Index guess = -1;
+      for (auto s = static_cast<std::size_t>(begin); s < static_cast<std::size_t>(end); ++s) {
+        if (const Index face = sample_faces_[s]; face >= 0) {
+          if (!has_moved(face) && sample_distances_[s] < near_) continue;
+          sample_distances_[s] = squared_distance(samples_[s], face);
+          if (sample_distances_[s] < near_) continue;
+          guess = places[at(face)];
+        }
+        const TriangleTree::Nearest found = boundary.nearest_from(samples_[s], guess, near_);
+        guess = found.place;
+        sample_faces_[s] = found.triangle;
+        sample_distances_[s] = found.squared_distance;
+      }
+    });
     list_samples();
   }
 
@@ -233,11 +231,10 @@ class BoundaryFit::Fit {
   }
 
   void find_probes() {
-    threads_.for_chunks(static_cast<std::int64_t>(probes_.size()), kFitGrain,
-                        [&](std::int64_t begin, std::int64_t end) {
-                          for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p)
-                            if (probe_moved(p)) probes_[p] = probe(p);
-                        });
+    threads_.for_chunks(static_cast<std::int64_t>(probes_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p)
+        if (probe_moved(p)) probes_[p] = probe(p);
+    });
   }
 
   /// Beginning with the triangle that was the nearest before; that is good enough if it is near.

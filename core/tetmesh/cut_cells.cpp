@@ -8,7 +8,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kTriangleGrain = 256;
+constexpr std::int64_t kGrain = 256;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -135,13 +135,12 @@ std::array<Vec4, 3> triangle_weights(const LatticeSurface& surface, Index triang
 
 std::vector<CellCut> cut_cells(const LatticeSurface& surface, const Threads& threads) {
   const auto n = static_cast<std::int64_t>(surface.triangles.size());
-  std::vector<std::vector<CellCut>> chunks(static_cast<std::size_t>((n + kTriangleGrain - 1) / kTriangleGrain));
-  threads.for_chunks(n, kTriangleGrain, [&](std::int64_t begin, std::int64_t end) {
+  std::vector<std::vector<CellCut>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
+  threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::vector<std::uint64_t> candidates;
     for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
-      if (surface.used[at(t)])
-        cut_triangle(surface, t, candidates, chunks[static_cast<std::size_t>(begin / kTriangleGrain)]);
-    chunks[static_cast<std::size_t>(begin / kTriangleGrain)].shrink_to_fit();
+      if (surface.used[at(t)]) cut_triangle(surface, t, candidates, chunks[static_cast<std::size_t>(begin / kGrain)]);
+    chunks[static_cast<std::size_t>(begin / kGrain)].shrink_to_fit();
   });
   std::size_t count = 0;
   for (const auto& chunk : chunks) count += chunk.size();

@@ -9,7 +9,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kEdgeGrain = 4096;
+constexpr std::int64_t kGrain = 4096;
 
 /// The lattice nodes while they are warped.
 struct WarpedLattice {
@@ -36,7 +36,7 @@ WarpedLattice make_lattice(const LatticeDistance& distance, const Threads& threa
   lattice.neighbors.resize(nodes.size());
   lattice.signs.resize(nodes.size());
   lattice.positions.resize(nodes.size());
-  threads.for_chunks(static_cast<std::int64_t>(nodes.size()), kEdgeGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(static_cast<std::int64_t>(nodes.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       for (std::size_t k = 0; k < kNeighbors; ++k)
         lattice.neighbors[i][k] = distance.nodes.find(lattice_neighbor(nodes[i], k));
@@ -79,7 +79,7 @@ void warp_node(WarpedLattice& lattice, std::size_t i) {
 /// the colours before, whatever the number of threads.
 void warp_nodes(WarpedLattice& lattice, const Threads& threads) {
   for (int color = 0; color < 4; ++color)
-    threads.for_chunks(static_cast<std::int64_t>(lattice.nodes().size()), kEdgeGrain,
+    threads.for_chunks(static_cast<std::int64_t>(lattice.nodes().size()), kGrain,
                        [&](std::int64_t begin, std::int64_t end) {
                          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
                            if (lattice_color(lattice.nodes()[i]) == color) warp_node(lattice, i);
@@ -179,9 +179,9 @@ void emit_edge(const WarpedLattice& lattice, const NodeNumbers& numbers, std::si
 std::vector<Tet> fill_tets(const WarpedLattice& lattice, const NodeNumbers& numbers, const Threads& threads) {
   const std::vector<LatticeNode>& nodes = lattice.nodes();
   const auto n = static_cast<std::int64_t>(nodes.size());
-  std::vector<std::vector<Tet>> chunks(static_cast<std::size_t>((n + kEdgeGrain - 1) / kEdgeGrain));
-  threads.for_chunks(n, kEdgeGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Tet>& tets = chunks[static_cast<std::size_t>(begin / kEdgeGrain)];
+  std::vector<std::vector<Tet>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
+  threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Tet>& tets = chunks[static_cast<std::size_t>(begin / kGrain)];
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
       for (std::size_t c = 0; c < 3 && (nodes[i][0] & 1) == 0; ++c) emit_edge(lattice, numbers, i, c, tets);
   });

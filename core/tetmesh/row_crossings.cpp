@@ -26,10 +26,10 @@ EdgePoint edge_point(std::array<double, 3> a, std::array<double, 3> b, double y)
   return {a[0] + t * (b[0] - a[0]), a[2] + t * (b[2] - a[2])};
 }
 
-using RowCorners = std::array<std::array<double, 3>, 3>;
+using Corners = std::array<std::array<double, 3>, 3>;
 
-RowCorners in_lattice_units(const std::array<Vec3, 3>& triangle, const LatticeFrame& frame) {
-  RowCorners corners;
+Corners in_lattice_units(const std::array<Vec3, 3>& triangle, const LatticeFrame& frame) {
+  Corners corners;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 p = (triangle[k] - frame.origin) * (2.0 / frame.spacing);
     corners[k] = {p[0], p[1], p[2]};
@@ -42,7 +42,7 @@ RowCorners in_lattice_units(const std::array<Vec3, 3>& triangle, const LatticeFr
 struct PlaneCut {
   EdgePoint up{}, down{};
 
-  PlaneCut(const RowCorners& corners, std::int32_t y) {
+  PlaneCut(const Corners& corners, std::int32_t y) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto &a = corners[k], &b = corners[(k + 1) % 3];
       if (a[1] <= y && b[1] > y) up = edge_point(a, b, y);
@@ -127,7 +127,7 @@ int winding_of_node(const TriangleTree& tree, const LatticeFrame& frame, const L
       continue;
     }
     for (Index i = box.begin; i < box.end; ++i) {
-      const RowCorners corners = in_lattice_units(tree.corners(i), frame);
+      const Corners corners = in_lattice_units(tree.corners(i), frame);
       const auto [from, to] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
       if (!(from <= node[1] && node[1] < to)) continue;
       const PlaneCut cut(corners, node[1]);

@@ -5,7 +5,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kPieceGrain = 64;
+constexpr std::int64_t kGrain = 64;
 
 /// A triangle is quartered so many times at most.
 constexpr int kMaxQuarterings = 6;
@@ -35,13 +35,13 @@ SurfaceMesh without_pieces(const std::vector<Vec3>& points, const std::vector<Tr
   SurfaceMesh rest;
   rest.positions = points;
   const auto n = static_cast<std::int64_t>(triangles.size());
-  std::vector<std::vector<Corners>> chunks(static_cast<std::size_t>((n + kPieceGrain - 1) / kPieceGrain));
-  threads.for_chunks(n, kPieceGrain, [&](std::int64_t begin, std::int64_t end) {
+  std::vector<std::vector<Corners>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
+  threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       if (suspected[t] == 0) continue;
       Corners x;
       for (std::size_t k = 0; k < 3; ++k) x[k] = points[static_cast<std::size_t>(triangles[t][k])];
-      add_kept(x, step, 0, leaves_out, chunks[static_cast<std::size_t>(begin / kPieceGrain)]);
+      add_kept(x, step, 0, leaves_out, chunks[static_cast<std::size_t>(begin / kGrain)]);
     }
   });
   for (std::size_t t = 0; t < triangles.size(); ++t)

@@ -26,6 +26,17 @@ inline SurfaceMesh make_torus(double major, double minor, Index around, Index ac
   return mesh;
 }
 
+/// Calls visit(a, b, c) for the triangles of a grid of cells * cells squares, whose points are numbered row by row.
+template <typename Visit>
+void each_grid_triangle(Index cells, const Visit& visit) {
+  for (Index i = 0; i < cells; ++i)
+    for (Index j = 0; j < cells; ++j) {
+      const Index a = i * (cells + 1) + j, b = a + cells + 1;
+      visit(a, b, b + 1);
+      visit(a, b + 1, a + 1);
+    }
+}
+
 /// The six sides of a box, each cut into cells x cells squares, moved by `place`. Vertices are not shared by the sides.
 template <typename Place>
 SurfaceMesh make_cube_sides(Index cells, const Place& place) {
@@ -45,12 +56,7 @@ SurfaceMesh make_cube_sides(Index cells, const Place& place) {
         if (side < 0) std::swap(b, c);
         mesh.triangles.push_back({first + a, first + b, first + c});
       };
-      for (Index i = 0; i < cells; ++i)
-        for (Index j = 0; j < cells; ++j) {
-          const Index a = i * (cells + 1) + j, b = a + cells + 1;
-          add(a, b, b + 1);
-          add(a, b + 1, a + 1);
-        }
+      each_grid_triangle(cells, add);
     }
   return mesh;
 }

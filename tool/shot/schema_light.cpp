@@ -10,7 +10,7 @@
 namespace softreel {
 namespace {
 
-const std::string kLightColorType = "[r, g, b]";
+const std::string kColorType = "[r, g, b]";
 
 /// What a kind of light is called, and the fields that not all kinds have.
 struct KindText {
@@ -77,7 +77,7 @@ void add_light_fields(Table<LightSettings>& t) {
       .add("aim", &L::aim, keyed(vector_of<Vec3>(kAnyNumber), "m"), "m", "area, disk: the point it faces.")
       .add("size", &L::size, vector_of<Vec2>(kPositive, "[width, height]"), "m", "area, disk: its edges or diameters.")
       .add("radius", &L::radius, number(kPositive), "m", "sphere: half its diameter.")
-      .add("color", &L::color, keyed(vector_of<Vec3>(kNotNegative, kLightColorType), "linear"), "linear",
+      .add("color", &L::color, keyed(vector_of<Vec3>(kNotNegative, kColorType), "linear"), "linear",
            "Colour of its light.")
       .add("power", &L::power, keyed(number(kNotNegative), "W"), "W",
            "Of the whole lamp; its radiance is power / (4 area), of a sphere power / (pi surface).")

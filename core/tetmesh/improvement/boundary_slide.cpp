@@ -11,7 +11,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kSlideGrain = 256;
+constexpr std::int64_t kGrain = 256;
 
 /// Shares of a mean boundary edge: samples of the surface are so far apart; less is round-off; nodes nearer than that
 /// to the surface are on it.
@@ -80,7 +80,7 @@ void BoundarySlide::assign_samples(const SurfaceMesh& surface, double step, cons
   const std::vector<Vec3> points = sample_triangles(surface.positions, surface.triangles, step);
   const TriangleTree boundary(nodes_, faces_);
   std::vector<TriangleTree::Nearest> found(points.size());
-  threads.for_chunks(static_cast<std::int64_t>(points.size()), kSlideGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(static_cast<std::int64_t>(points.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
       found[i] = boundary.nearest(points[i]);
   });

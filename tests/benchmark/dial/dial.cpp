@@ -97,8 +97,8 @@ void run_dial(const BenchOptions& options, Report& report) {
   report.say(
       "Truth, bars: tetrahedra of cubes whose planes lie where the pins end, made by this benchmark and led on from "
       "two sizes by order 1.2, as measured, since the error of softreel's own meshes is mostly that a pin holds whole "
-      "tetrahedra "
-      "and so ends up to an edge further than was selected. Truth, creature: softreel's own finer meshes led on by "
+      "tetrahedra and so ends up to an edge further than was selected. Truth, creature: softreel's own finer meshes "
+      "led on by "
       "first order, which shares what pins do to them. Steps of an eighth of a frame, corrected by steps of a 32nd.");
   Table table = new_table();
   Plot plot = new_plot();

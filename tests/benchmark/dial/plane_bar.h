@@ -9,8 +9,8 @@ namespace softreel::bench {
 
 /// Cubes cut in six, about `across` of them over the bar's thickness, with a plane of nodes at the end of each pinned
 /// set of vertices. A pin that holds whole tetrahedra, anywhere in a lattice, reaches up to an edge further, which is
-/// the main error of the bars that softreel fills itself; here it reaches no further along
-/// the bar, and what is left of first order, that it holds a shell one tetrahedron thick, falls evenly.
+/// the main error of the bars that softreel fills itself; here it reaches no further along the bar, and what is left
+/// of first order, that it holds a shell one tetrahedron thick, falls evenly.
 FilledBody fill_to_planes(const SurfaceMesh& surface, const BodyConstraints& constraints, int across);
 
 }  // namespace softreel::bench

@@ -2,10 +2,12 @@
 #include "core/tetmesh/sheet_shells.h"
 
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "core/tetmesh/winding_number.h"
+#include "tests/support/surfaces.h"
 
 namespace softreel {
 namespace {
@@ -18,16 +20,10 @@ SurfaceMesh crumpled_sheet(Index cells, double height, unsigned seed) {
   SurfaceMesh sheet;
   for (Index i = 0; i <= cells; ++i)
     for (Index j = 0; j <= cells; ++j) sheet.positions.push_back(Vec3(i, j, height * share()));
-  const auto add = [&](Index a, Index b, Index c) {
+  test::each_grid_triangle(cells, [&](Index a, Index b, Index c) {
     if (share() < 0.5) std::swap(b, c);
     sheet.triangles.push_back({a, b, c});
-  };
-  for (Index i = 0; i < cells; ++i)
-    for (Index j = 0; j < cells; ++j) {
-      const Index corner = i * (cells + 1) + j, beyond = corner + cells + 1;
-      add(corner, beyond, beyond + 1);
-      add(corner, beyond + 1, corner + 1);
-    }
+  });
   return sheet;
 }
 
