@@ -26,6 +26,12 @@ constexpr double kBestLinearTolerance = 1e-10;
 constexpr double kRigidShift = 1e-7;
 constexpr std::int64_t kElementGrain = 1024;
 
+/// What rounding explains is an upper bound: linear solves go on to this share of it. Steps of time, whose stiff parts
+/// move rigidly, come to a twentieth of it or less.
+constexpr double kStaticFloor = 0.1, kStepFloor = 0.01;
+/// Iterations of a step in a row that may end below that bound without having halved the residual.
+constexpr int kStalls = 2;
+
 /// True if no position would change by more than its rounding.
 bool is_negligible(std::span<const Vec3> direction, std::span<const Vec3> positions) {
   for (std::size_t i = 0; i < direction.size(); ++i)
@@ -212,8 +218,9 @@ void StaticSolver::adjust_terms_to_damping(const StaticState& state, Curvature c
 SolveReport StaticSolver::solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
                                        int max_iterations, std::span<Vec3> change) {
   const ScopedStage stage(parts_.times, "simulate/solve");
+  const double floor = (potential_ != nullptr ? kStepFloor : kStaticFloor) * state.round_off;
   const SolveReport report =
-      parts_.multigrid.solve(parts_.matrix, right_side, change, tolerance, 0.1 * state.round_off, max_iterations);
+      parts_.multigrid.solve(parts_.matrix, right_side, change, tolerance, floor, max_iterations);
   linear_iterations_ += report.iterations;
   return report;
 }
@@ -355,11 +362,12 @@ SolveReport StaticSolver::solve(StaticState& state, std::span<const Vec3> target
   if (!std::isfinite(state.residual) || !move_held(state, targets)) return finish(SolveStatus::Breakdown);
   std::vector<Vec3> direction(state.positions.size());
   double before = std::numeric_limits<double>::infinity();
+  int stalls = 0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     if (state.residual <= tolerance * state.scale) return finish(SolveStatus::Converged);
-    // What rounding explains is an upper bound: in a step of time, a residual that still falls may fall on.
-    const bool falls = potential_ != nullptr && state.residual < 0.5 * before;
-    if (state.residual <= state.round_off && !falls) return finish(SolveStatus::RoundOff);
+    stalls = state.residual < 0.5 * before ? 0 : stalls + 1;
+    if (state.residual <= state.round_off && (potential_ == nullptr || stalls > kStalls))
+      return finish(SolveStatus::RoundOff);
     before = state.residual;
     ++iterations_;
     // Looser far from the solution, so that the iteration converges superlinearly but no solve is finer than it helps.
