@@ -36,6 +36,11 @@ function(softreel_add_part owner name)
   endif()
   if(NOT SOFTREEL_LAZY_PARTS)
     target_sources(${owner} PRIVATE ${part_SOURCE})
+    # Never in a group with others: the groups of the others are the same then, with the part and without it.
+    foreach(source ${part_SOURCE})
+      set_property(SOURCE "${CMAKE_CURRENT_SOURCE_DIR}/${source}" TARGET_DIRECTORY ${owner}
+                   PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+    endforeach()
     target_link_libraries(${owner} PRIVATE softreel_part_${name})
     return()
   endif()

@@ -12,11 +12,11 @@ function(softreel_precompile target)
   endif()
 endfunction()
 
-# softreel_compile_in_groups(TARGET): four sources at a time, which reads their headers and makes their templates once.
-# Names in anonymous namespaces of one group must differ. For what is compiled whole more often than source by source.
-function(softreel_compile_in_groups target)
+# softreel_compile_in_groups(TARGET SIZE): so many sources at a time, which reads their headers and makes their templates
+# once. Names in anonymous namespaces of one group must differ. For what is compiled whole more often than source by source.
+function(softreel_compile_in_groups target size)
   if(SOFTREEL_PRECOMPILE)  # not where it is asked what sources forget to include
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
   endif()
 endfunction()
 

@@ -7,7 +7,7 @@ namespace softreel {
 namespace {
 
 /// What does not depend on the table. `cur` is the word under the cursor, `shot` the first other word that names one.
-constexpr const char* kHead = R"(# Completion of softreel for bash, made by `softreel completion bash`.
+constexpr const char* kBashHead = R"(# Completion of softreel for bash, made by `softreel completion bash`.
 # Now: source <(softreel completion bash). Always: put that line into ~/.bashrc.
 
 _softreel_words() {  # those of the arguments that begin like the current word
@@ -63,7 +63,7 @@ _softreel() {
 )";
 
 /// The shell command that completes a value of this kind.
-std::string action(const OptionText& option) {
+std::string bash_action(const OptionText& option) {
   switch (option.kind) {
     case ArgumentKind::None:
     case ArgumentKind::Text:
@@ -102,7 +102,7 @@ std::string value_cases(const CommandText& command) {
     std::string patterns;
     for (const std::string& name : option.names)
       patterns += fmt::format("{}{}:{}", patterns.empty() ? "" : "|", command.name, name);
-    cases += fmt::format("    {}) {}; return ;;\n", patterns, action(option));
+    cases += fmt::format("    {}) {}; return ;;\n", patterns, bash_action(option));
   }
   return cases;
 }
@@ -110,7 +110,7 @@ std::string value_cases(const CommandText& command) {
 }  // namespace
 
 std::string bash_completion(const std::vector<CommandText>& commands, const CommandText& program) {
-  std::string script = kHead;
+  std::string script = kBashHead;
   script += "  case $command:$option in\n";
   for (const CommandText& command : commands) script += value_cases(command);
   script += "  esac\n  case $command in\n";
@@ -121,7 +121,7 @@ std::string bash_completion(const std::vector<CommandText>& commands, const Comm
                           option_names(command));
     std::string words;
     for (const OptionText& option : command.options)
-      if (option.positional) words += action(option) + "; ";
+      if (option.positional) words += bash_action(option) + "; ";
     script += fmt::format("      else {}fi ;;\n", words.empty() ? ":; " : words);
   }
   script +=

@@ -6,7 +6,7 @@
 namespace softreel {
 namespace {
 
-constexpr const char* kHead = R"(# Completion of softreel for fish, made by `softreel completion fish`: put it into
+constexpr const char* kFishHead = R"(# Completion of softreel for fish, made by `softreel completion fish`: put it into
 # ~/.config/fish/completions/softreel.fish, or: softreel completion fish | source
 
 function __softreel_ask
@@ -28,7 +28,7 @@ end
 complete -c softreel -f
 )";
 
-std::string quoted(const std::string& text) {
+std::string fish_quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) {
     if (c == '\'' || c == '\\') out += '\\';
@@ -38,7 +38,7 @@ std::string quoted(const std::string& text) {
 }
 
 /// What `-a` is given.
-std::string action(const OptionText& option) {
+std::string fish_action(const OptionText& option) {
   switch (option.kind) {
     case ArgumentKind::None:
     case ArgumentKind::Text:
@@ -64,23 +64,24 @@ std::string action(const OptionText& option) {
 }
 
 std::string line(const OptionText& option, const std::string& condition) {
-  std::string text = fmt::format("complete -c softreel -n {}", quoted(condition));
+  std::string text = fmt::format("complete -c softreel -n {}", fish_quoted(condition));
   if (!option.positional)
     for (const std::string& name : option.names)
       text += name.starts_with("--") ? fmt::format(" -l {}", name.substr(2)) : fmt::format(" -s {}", name.substr(1));
   if (!option.positional && !option.argument.empty()) text += " -x";
-  if (!option.argument.empty() && !action(option).empty()) text += fmt::format(" -a {}", quoted(action(option)));
-  return text + fmt::format(" -d {}\n", quoted(option.sentence));
+  if (!option.argument.empty() && !fish_action(option).empty())
+    text += fmt::format(" -a {}", fish_quoted(fish_action(option)));
+  return text + fmt::format(" -d {}\n", fish_quoted(option.sentence));
 }
 
 }  // namespace
 
 std::string fish_completion(const std::vector<CommandText>& commands, const CommandText& program) {
-  std::string script = kHead;
+  std::string script = kFishHead;
   for (const OptionText& option : program.options) script += line(option, "__fish_use_subcommand");
   for (const CommandText& command : commands)
     script += fmt::format("complete -c softreel -n __fish_use_subcommand -a {} -d {}\n", command.name,
-                          quoted(command.sentence));
+                          fish_quoted(command.sentence));
   for (const CommandText& command : commands)
     for (const OptionText& option : command.options)
       script += line(option, "__fish_seen_subcommand_from " + command.name);

@@ -6,7 +6,7 @@
 namespace softreel {
 namespace {
 
-constexpr const char* kHead = R"zsh(#compdef softreel
+constexpr const char* kZshHead = R"zsh(#compdef softreel
 # Completion of softreel for zsh, made by `softreel completion zsh`: a file _softreel in a folder of $fpath, or
 # source <(softreel completion zsh) after compinit.
 
@@ -40,7 +40,7 @@ _softreel_set() {  # PATH=VALUE
 )zsh";
 
 /// Text between single quotes of the shell, with what _arguments takes for its own escaped.
-std::string quoted(const std::string& text) {
+std::string zsh_quoted(const std::string& text) {
   std::string out;
   for (const char c : text) {
     if (c == '\'') {
@@ -54,7 +54,7 @@ std::string quoted(const std::string& text) {
 }
 
 /// What _arguments runs; with a blank before it, it passes on nothing of its own.
-std::string action(const OptionText& option) {
+std::string zsh_action(const OptionText& option) {
   switch (option.kind) {
     case ArgumentKind::None:
     case ArgumentKind::Text:
@@ -82,11 +82,11 @@ std::string action(const OptionText& option) {
 /// One argument of _arguments.
 std::string spec(const OptionText& option, const std::string& name, int position) {
   if (option.positional)
-    return fmt::format("'{}:{}:{}'", option.repeatable ? "*" : std::to_string(position), quoted(option.names.front()),
-                       action(option));
+    return fmt::format("'{}:{}:{}'", option.repeatable ? "*" : std::to_string(position),
+                       zsh_quoted(option.names.front()), zsh_action(option));
   const std::string value =
-      option.argument.empty() ? "" : fmt::format(":{}:{}", quoted(option.argument), action(option));
-  return fmt::format("'{}{}[{}]{}'", option.repeatable ? "*" : "", name, quoted(option.sentence), value);
+      option.argument.empty() ? "" : fmt::format(":{}:{}", zsh_quoted(option.argument), zsh_action(option));
+  return fmt::format("'{}{}[{}]{}'", option.repeatable ? "*" : "", name, zsh_quoted(option.sentence), value);
 }
 
 std::string specs(const CommandText& command) {
@@ -102,12 +102,12 @@ std::string specs(const CommandText& command) {
 }  // namespace
 
 std::string zsh_completion(const std::vector<CommandText>& commands, const CommandText& program) {
-  std::string script = kHead;
+  std::string script = kZshHead;
   script +=
       "_softreel() {\n  local curcontext=$curcontext state line\n  typeset -A opt_args\n"
       "  local -a _softreel_line commands\n  _softreel_line=($words)\n  commands=(\n";
   for (const CommandText& command : commands)
-    script += fmt::format("    '{}:{}'\n", command.name, quoted(command.sentence));
+    script += fmt::format("    '{}:{}'\n", command.name, zsh_quoted(command.sentence));
   script += fmt::format(
       "  )\n  _arguments -C {} \\\n        '1:command:->command' '*::argument:->argument' && return\n", specs(program));
   script +=

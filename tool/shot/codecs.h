@@ -31,6 +31,8 @@ inline constexpr Range kAnyNumber{};
 inline constexpr Range kPositive{0, kNoEnd, true};
 inline constexpr Range kNotNegative{0, kNoEnd, false};
 inline constexpr Range kShare{0, 1, false};
+/// How a colour is spelt.
+inline constexpr const char* kColorType = "[r, g, b]";
 
 /// "above 0", "0 to 1", "any".
 std::string to_text(const Range& range);

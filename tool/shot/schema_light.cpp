@@ -10,8 +10,6 @@
 namespace softreel {
 namespace {
 
-const std::string kColorType = "[r, g, b]";
-
 /// What a kind of light is called, and the fields that not all kinds have.
 struct KindText {
   LightKind kind;

@@ -9,8 +9,6 @@
 namespace softreel {
 namespace {
 
-const std::string kColorType = "[r, g, b]";
-
 void check_camera(const Place& place, const TomlValue& value, CameraSettings& camera) {
   if (camera.mode != CameraMode::Place) return;
   for (const auto* field : {"position", "target"})
