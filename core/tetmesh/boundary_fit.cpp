@@ -23,12 +23,11 @@ constexpr double kReach = 1.0;
 /// Samples nearer than this share of the tolerance are let be.
 constexpr double kNear = 0.8;
 
+/// Newton's steps are damped by this share of the matrix's trace.
+constexpr double kDamping = 0.05;
+
 /// A face is drawn by the farthest of its samples, and by about so many others.
 constexpr Index kFaceSamples = 12;
-
-double cubed(double x) {
-  return x * x * x;
-}
 
 }  // namespace
 
@@ -98,6 +97,7 @@ class BoundaryFit::Fit {
       add_probe(stars_.nodes.size() + e, {stars_.edges[e][0], stars_.edges[e][1], stars_.edges[e][1]});
     for (std::size_t b = 0; b < stars_.nodes.size(); ++b)
       add_probe(b, {stars_.nodes[b], stars_.nodes[b], stars_.nodes[b]});
+    add_corner_gaps(limit, gaps);
     return gaps;
   }
 
@@ -116,6 +116,18 @@ class BoundaryFit::Fit {
     for (const Index e : stars_.edges_of.of(b))
       squared = std::max(squared, (position(stars_.edges[at(e)][0]) - position(stars_.edges[at(e)][1])).squaredNorm());
     return std::sqrt(squared);
+  }
+
+  /// Gaps at three more points of each face, between its middle and its corners: no fit draws there.
+  void add_corner_gaps(double limit, std::vector<BoundaryGap>& gaps) const {
+    for (std::size_t f = 0; f < stars_.faces.size(); ++f) {
+      const std::size_t p = stars_.nodes.size() + stars_.edges.size() + f;
+      for (const Index corner : stars_.faces[f].nodes) {
+        const Vec3 x = 0.5 * (probe_point(p) + position(corner));
+        const TriangleTree::Nearest found = tree_.nearest_from(x, probes_[p].place, limit * limit);
+        if (found.squared_distance > limit * limit) gaps.push_back({found.point, x, stars_.faces[f].nodes, true});
+      }
+    }
   }
 
   /// Moves every node to the nearest point of the surface, as far as its star allows.
@@ -283,11 +295,13 @@ class BoundaryFit::Fit {
         double least = squared_distance(*x, f);
         if (least > near_)
           for (const Index g : stars_.faces_of.of(b)) least = std::min(least, squared_distance(*x, g));
-        sum += cubed(least);
+        sum += least * least * least;
         if (sum > limit) return sum;
       }
     visit_probes(b, [&](std::size_t p, double) {
-      if (sum <= limit) sum += cubed(probe(p).squared);
+      if (sum > limit) return;
+      const double squared = probe(p).squared;
+      sum += squared * squared * squared;
     });
     return sum;
   }
@@ -313,23 +327,14 @@ class BoundaryFit::Fit {
       const auto& [i, j, k] = stars_.faces[at(f)].nodes;
       for (std::size_t s = 0; s < face_samples_.of(at(f)).size(); ++s, ++x) {
         const Vec3 foot = nearest_on_triangle(*x, position(i), position(j), position(k));
-        const double share = barycentric_share(foot, own, stars_.faces[at(f)].nodes);
+        const std::array<Index, 2> rest = own == i ? std::array{j, k} : own == j ? std::array{k, i} : std::array{i, j};
+        const double share = first_weight(foot, position(own), position(rest[0]), position(rest[1]));
         if (share > 0) add(*x - foot, share);
       }
     }
     matrix.diagonal().array() += kDamping * matrix.trace() + 1e-300;
     return matrix.ldlt().solve(force);
   }
-  static constexpr double kDamping = 0.05;
-
-  /// Barycentric weight of one corner at a point of a face.
-  double barycentric_share(const Vec3& p, Index own, const Triangle& face) const {
-    const std::size_t k = face[0] == own ? 0 : face[1] == own ? 1 : 2;
-    const Vec3 &a = position(face[k]), &b = position(face[(k + 1) % 3]), &c = position(face[(k + 2) % 3]);
-    const Vec3 area = (b - a).cross(c - a);
-    return area.dot((b - p).cross(c - p)) / area.squaredNorm();
-  }
-
   bool relax(std::size_t b) {
     take_star_samples(b);
     Vec3 step = newton_step(b);

@@ -28,7 +28,7 @@ constexpr double kCertain = 0.98;
 
 /// In the first rounds, which are far from the goal, what a longer fit would mend is let be: fewer sweeps, and gaps of
 /// more than so many budgets.
-constexpr int kFirstRounds = 2, kFirstSweeps = 2, kSweeps = 4;
+constexpr int kFirstRounds = 2, kFirstSweeps = 2, kCountSweeps = 3, kSweeps = 4;
 constexpr double kFirstLimit = 1.5;
 
 /// So many fillings an error may take. The last ones go after single places: what a refinement mends may spoil what is
@@ -88,6 +88,7 @@ double guess_error(double area, double tets) {
 struct CountedFilling {
   GradedFilling filling;
   double count = 0;        ///< of tetrahedra
+  double widest = 0;       ///< of the gaps that are known, m
   bool is_fitted = false;  ///< not where base edges alone took too many
 };
 
@@ -142,7 +143,7 @@ class Filling {
       GradedFilling filling = fill();
       const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
       const bool is_too_many = count > (1 + kCountTolerance) * params_.tets;
-      if (is_too_many && !last) return {std::move(filling), count, false};
+      if (is_too_many && !last) return {std::move(filling), count, 0, false};
       if (is_too_many && mendings > 0) break;
       if (is_too_many && last->count > 0 && retries++ < kRetries) {
         last->added *= (params_.tets - last->count) / (count - last->count);
@@ -153,7 +154,9 @@ class Filling {
       last.reset();                  // before there are the next
       if (mendings == 0) best = {};  // what met the count is kept until something better has
       last = find_refinement(filling.stuffed, count);
-      best = {std::move(filling), count, true};
+      const double width = widest(last->gaps);
+      if (mendings > 0 && width > best.widest) break;  // what was mended spoilt something else
+      best = {std::move(filling), count, width, true};
       if (is_too_many || is_hopeless(count)) break;
       if (count >= (1 - kCountTolerance) * params_.tets && mendings++ == kMendings) break;
       if (!refine(*last, best.filling.stuffed.mesh.nodes)) break;
@@ -194,7 +197,7 @@ class Filling {
                          : narrowest_ < 1e300 ? kAhead * wide
                                               : 0;
     Refinement found{octree_, {}, {}, count};
-    found.gaps = fit(stuffed, kFirstSweeps, limit, thin_samples(count));
+    found.gaps = fit(stuffed, kCountSweeps, limit, thin_samples(count));
     std::stable_sort(found.gaps.begin(), found.gaps.end(),
                      [](const BoundaryGap& a, const BoundaryGap& b) { return width_of(a) > width_of(b); });
     if (is_near) found.loose = filled_.find_loose_pieces(stuffed);

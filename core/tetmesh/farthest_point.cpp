@@ -123,7 +123,7 @@ std::vector<Probe> probe_points(const std::vector<Vec3>& points, const std::vect
 
 double farthest_distance(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                          const TriangleTree& tree, const Threads& threads) {
-  if (tree.nodes().empty() || triangles.empty()) return 0;
+  if (tree.empty() || triangles.empty()) return 0;
   const std::vector<Probe> probes = probe_points(points, triangles, tree, threads);
   double lower = 0;
   for (const Probe& probe : probes) lower = std::max(lower, probe.distance);
@@ -172,7 +172,7 @@ void visit_far(const std::vector<Vec3>& points, const std::vector<Triangle>& tri
 
 std::vector<Vec3> find_far_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                   const TriangleTree& tree, double limit, const Threads& threads) {
-  if (tree.nodes().empty() || triangles.empty()) return {};
+  if (tree.empty() || triangles.empty()) return {};
   const auto n = static_cast<std::int64_t>(triangles.size());
   std::vector<std::vector<Vec3>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
   visit_far(points, triangles, tree, limit, threads, [&](std::size_t t, const std::vector<Vec3>& of_triangle) {
@@ -187,7 +187,7 @@ std::vector<Vec3> find_far_points(const std::vector<Vec3>& points, const std::ve
 std::vector<std::uint8_t> find_far_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                              const TriangleTree& tree, double limit, const Threads& threads) {
   std::vector<std::uint8_t> far(triangles.size(), 0);
-  if (tree.nodes().empty() || triangles.empty()) return far;
+  if (tree.empty() || triangles.empty()) return far;
   visit_far(points, triangles, tree, limit, threads,
             [&](std::size_t t, const std::vector<Vec3>& of_triangle) { far[t] = of_triangle.empty() ? 0 : 1; });
   return far;

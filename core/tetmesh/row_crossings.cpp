@@ -109,31 +109,21 @@ int RowCrossings::winding(const LatticeNode& node) const {
 }
 
 int winding_of_node(const TriangleTree& tree, const LatticeFrame& frame, const LatticeNode& node) {
-  if (tree.nodes().empty()) return 0;
   constexpr double kMargin = 1e-6;  // lattice units; far above the round-off of a box
   const double scale = 2.0 / frame.spacing;
+  const auto meets = [&](const Vec3& min, const Vec3& max) {
+    const Vec3 low = (min - frame.origin) * scale, high = (max - frame.origin) * scale;
+    return low[0] <= node[0] + kMargin && low[1] <= node[1] + kMargin && high[1] >= node[1] - kMargin &&
+           low[2] <= node[2] + kMargin && high[2] >= node[2] - kMargin;
+  };
   int winding = 0;
-  std::array<Index, 64> open{0};  // halving: depth at most 32
-  for (std::size_t depth = 1; depth > 0;) {
-    const Index n = open[--depth];
-    const TriangleTree::Node& box = tree.nodes()[static_cast<std::size_t>(n)];
-    const Vec3 low = (box.min - frame.origin) * scale, high = (box.max - frame.origin) * scale;
-    if (low[0] > node[0] + kMargin || low[1] > node[1] + kMargin || high[1] < node[1] - kMargin ||
-        low[2] > node[2] + kMargin || high[2] < node[2] - kMargin)
-      continue;
-    if (!box.is_leaf()) {
-      open[depth++] = box.right;
-      open[depth++] = n + 1;
-      continue;
-    }
-    for (Index i = box.begin; i < box.end; ++i) {
-      const Corners corners = in_lattice_units(tree.corners(i), frame);
-      const auto [from, to] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
-      if (!(from <= node[1] && node[1] < to)) continue;
-      const PlaneCut cut(corners, node[1]);
-      if (cut.z_begin() <= node[2] && node[2] < cut.z_end() && cut.x_at(node[2]) <= node[0]) winding -= cut.sign();
-    }
-  }
+  tree.visit(meets, [&](Index place) {
+    const Corners corners = in_lattice_units(tree.corners(place), frame);
+    const auto [from, to] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
+    if (!(from <= node[1] && node[1] < to)) return;
+    const PlaneCut cut(corners, node[1]);
+    if (cut.z_begin() <= node[2] && node[2] < cut.z_end() && cut.x_at(node[2]) <= node[0]) winding -= cut.sign();
+  });
   return winding;
 }
 

@@ -1,16 +1,26 @@
 #include "core/tetmesh/triangle_tree.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <limits>
 
 namespace softreel {
 namespace {
 
-constexpr Index kLeafSize = 4;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Of a tree over so many triangles.
-std::size_t count_nodes(Index triangles) {
-  return triangles <= kLeafSize ? 1 : 1 + count_nodes(triangles / 2) + count_nodes(triangles - triangles / 2);
+/// Points and boxes are drawn into a cube of this half size, m: their squares are finite then, and what is drawn into
+/// a convex body comes no further apart.
+constexpr double kFar = 1e18;
+
+float rounded_down(double x) {
+  x = std::clamp(x, -kFar, kFar);
+  const auto rounded = static_cast<float>(x);
+  return rounded > x ? std::nextafter(rounded, -kInfinity) : rounded;
+}
+
+float rounded_up(double x) {
+  return -rounded_down(-x);
 }
 
 }  // namespace
@@ -37,38 +47,82 @@ Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   return a + vb / sum * ab + vc / sum * ac;
 }
 
-TriangleTree::TriangleTree(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles)
-    : order_(triangles.size()) {
+TriangleTree::TriangleTree(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
   if (triangles.empty()) return;
-  std::iota(order_.begin(), order_.end(), 0);
-  Given given{points, triangles, {}};
-  given.centroids.reserve(triangles.size());
-  for (const auto& [a, b, c] : triangles)
-    given.centroids.push_back((points[static_cast<std::size_t>(a)] + points[static_cast<std::size_t>(b)] +
-                               points[static_cast<std::size_t>(c)]) /
-                              3.0);
-  nodes_.reserve(count_nodes(static_cast<Index>(triangles.size())));
-  build(given, 0, static_cast<Index>(triangles.size()));
-  std::vector<Vec3>().swap(given.centroids);
-  take_corners(given);
+  TriangleSorter sorter(points, triangles);
+  order_node(sorter, 0, static_cast<Index>(triangles.size()));
+  triangles_ = OrderedTriangles(points, triangles, sorter.take_order());
+  find_boxes();
 }
 
-void TriangleTree::take_corners(const Given& given) {
-  std::vector<Index> numbers(given.points.size(), -1);
-  triangles_.reserve(order_.size());
-  for (const Index t : order_) {
-    Triangle triangle = given.triangles[static_cast<std::size_t>(t)];
-    for (Index& v : triangle) {
-      Index& number = numbers[static_cast<std::size_t>(v)];
-      if (number < 0) {
-        number = static_cast<Index>(points_.size());
-        points_.push_back(given.points[static_cast<std::size_t>(v)]);
-      }
-      v = number;
+/// Orders the triangles of one node: all its children but the last are full.
+void TriangleTree::order_node(TriangleSorter& sorter, Index begin, Index end) {
+  if (end - begin <= kWidth) return;
+  std::int64_t child_size = kWidth;
+  while (child_size * kWidth < end - begin) child_size *= kWidth;
+  order_children(sorter, begin, end, static_cast<Index>(child_size));
+}
+
+void TriangleTree::order_children(TriangleSorter& sorter, Index begin, Index end, Index child_size) {
+  if (end - begin <= child_size) return order_node(sorter, begin, end);
+  const Index children = (end - begin - 1) / child_size + 1, middle = begin + (children + 1) / 2 * child_size;
+  sorter.split(begin, middle, end);
+  order_children(sorter, begin, middle, child_size);
+  order_children(sorter, middle, end, child_size);
+}
+
+void TriangleTree::find_boxes() {
+  const auto count = static_cast<Index>(order().size());
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+  for (Index place = 0; place < count; ++place)
+    for (const Vec3& corner : corners(place)) {
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
     }
-    triangles_.push_back(triangle);
+  middle_ = 0.5 * (low + high);
+  std::vector<Index> level_counts;
+  for (Index n = count; level_counts.empty() || n > 1; level_counts.push_back(n)) n = (n - 1) / kWidth + 1;
+  std::size_t nodes = 0;
+  for (const Index n : level_counts) {
+    level_begins_.push_back(nodes);
+    nodes += at(n);
   }
-  points_.shrink_to_fit();
+  Node empty;
+  for (std::size_t k = 0; k < 3; ++k) {
+    empty.min[k].setConstant(kInfinity);
+    empty.max[k].setConstant(-kInfinity);
+  }
+  nodes_.assign(nodes, empty);
+  for (Index place = 0; place < count; ++place) {
+    const auto& [a, b, c] = corners(place);
+    Node& node = nodes_[at(place / kWidth)];
+    const Vec3 min = a.cwiseMin(b).cwiseMin(c) - middle_, max = a.cwiseMax(b).cwiseMax(c) - middle_;
+    for (int k = 0; k < 3; ++k) {
+      node.min[static_cast<std::size_t>(k)][place % kWidth] = rounded_down(min[k]);
+      node.max[static_cast<std::size_t>(k)][place % kWidth] = rounded_up(max[k]);
+    }
+  }
+  for (std::size_t level = 1; level < level_begins_.size(); ++level)
+    for (Index number = 0; number < level_counts[level - 1]; ++number) {
+      const Node& child = nodes_[level_begins_[level - 1] + at(number)];
+      Node& node = nodes_[level_begins_[level] + at(number / kWidth)];
+      for (std::size_t k = 0; k < 3; ++k) {
+        node.min[k][number % kWidth] = child.min[k].minCoeff();
+        node.max[k][number % kWidth] = child.max[k].maxCoeff();
+      }
+    }
+}
+
+TriangleTree::Query TriangleTree::query_of(const Vec3& p) const {
+  Query query;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double x = p[static_cast<Eigen::Index>(k)] - middle_[static_cast<Eigen::Index>(k)];
+    const auto rounded = static_cast<float>(std::clamp(x, -kFar, kFar));
+    const float margin = std::abs(rounded) * FLT_EPSILON + FLT_MIN;  // no less than a last bit
+    query.low[k] = rounded - margin;
+    query.high[k] = rounded + margin;
+  }
+  return query;
 }
 
 TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, double squared_enough,
@@ -77,7 +131,7 @@ TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, dou
   if (place >= 0) {
     const auto& [a, b, c] = corners(place);
     guess.point = nearest_on_triangle(p, a, b, c);
-    guess.triangle = order_[static_cast<std::size_t>(place)];
+    guess.triangle = order()[at(place)];
     guess.squared_distance = (guess.point - p).squaredNorm();
     guess.place = place;
   }
@@ -86,35 +140,6 @@ TriangleTree::Nearest TriangleTree::nearest_from(const Vec3& p, Index place, dou
     guess.squared_distance = squared_limit;
   }
   return search(p, guess, squared_enough, [](Index, const Vec3&) { return true; });
-}
-
-void TriangleTree::build(const Given& given, Index begin, Index end) {
-  const auto number = static_cast<Index>(nodes_.size());
-  Node node{Vec3::Constant(1e300), Vec3::Constant(-1e300), begin, end, 0};
-  Vec3 low = node.min, high = node.max;
-  for (Index i = begin; i < end; ++i) {
-    const auto t = static_cast<std::size_t>(order_[static_cast<std::size_t>(i)]);
-    for (const Index v : given.triangles[t]) {
-      const Vec3& corner = given.points[static_cast<std::size_t>(v)];
-      node.min = node.min.cwiseMin(corner);
-      node.max = node.max.cwiseMax(corner);
-    }
-    low = low.cwiseMin(given.centroids[t]);
-    high = high.cwiseMax(given.centroids[t]);
-  }
-  nodes_.push_back(node);
-  if (end - begin <= kLeafSize) return;
-  int axis = 0;
-  (high - low).maxCoeff(&axis);
-  const Index middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](Index a, Index b) {
-    const double x = given.centroids[static_cast<std::size_t>(a)][axis],
-                 y = given.centroids[static_cast<std::size_t>(b)][axis];
-    return x != y ? x < y : a < b;
-  });
-  build(given, begin, middle);
-  nodes_[static_cast<std::size_t>(number)].right = static_cast<Index>(nodes_.size());
-  build(given, middle, end);
 }
 
 }  // namespace softreel

@@ -22,10 +22,10 @@ double half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 }  // namespace
 
 WindingNumber::WindingNumber(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles)
-    : tree_(points, triangles), dipoles_(tree_.nodes().size()) {
+    : clusters_(points, triangles), dipoles_(clusters_.nodes().size()) {
   std::vector<double> weights(dipoles_.size());
   for (std::size_t n = dipoles_.size(); n-- > 0;) {  // children come after their parents
-    const TriangleTree::Node& node = tree_.nodes()[n];
+    const TriangleClusters::Node& node = clusters_.nodes()[n];
     Vec3 area = Vec3::Zero(), moment = Vec3::Zero();
     double weight = 0;
     const auto add = [&](const Vec3& part_area, const Vec3& center, double part_weight) {
@@ -35,7 +35,7 @@ WindingNumber::WindingNumber(const std::vector<Vec3>& points, const std::vector<
     };
     if (node.is_leaf()) {
       for (Index i = node.begin; i < node.end; ++i) {
-        const auto& [a, b, c] = tree_.corners(i);
+        const auto& [a, b, c] = clusters_.corners(i);
         const Vec3 normal = 0.5 * (b - a).cross(c - a);
         add(normal, (a + b + c) / 3.0, normal.norm());
       }
@@ -48,7 +48,7 @@ WindingNumber::WindingNumber(const std::vector<Vec3>& points, const std::vector<
     dipoles_[n] = {center, area, kAccuracy * kAccuracy * radius * radius, node.begin, node.end, node.right};
     weights[n] = weight;
   }
-  tree_.drop_nodes();
+  clusters_.drop_nodes();
 }
 
 double WindingNumber::operator()(const Vec3& p) const {
@@ -72,7 +72,7 @@ double WindingNumber::operator()(const Vec3& p) const {
       continue;
     }
     for (Index i = dipole.begin; i < dipole.end; ++i) {
-      const auto& [a, b, c] = tree_.corners(i);
+      const auto& [a, b, c] = clusters_.corners(i);
       half_angles += half_solid_angle(a - p, b - p, c - p);
     }
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/tetmesh/triangle_tree.h"
+#include "core/tetmesh/triangle_clusters.h"
 
 namespace softreel {
 
@@ -28,7 +28,7 @@ class WindingNumber {
     Index begin, end, right;  // as in the node
   };
 
-  TriangleTree tree_;  // its triangles; the dipoles have its nodes
+  TriangleClusters clusters_;  // its triangles; the dipoles have its nodes
   std::vector<Dipole> dipoles_;
 };
 

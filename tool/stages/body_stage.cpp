@@ -16,7 +16,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same surface would give other tetrahedra or another embedding.
-constexpr const char* kFillVersion = "tetrahedra 7";
+constexpr const char* kFillVersion = "tetrahedra 8";
 
 std::vector<std::uint8_t> pack(const FilledBody& filled) {
   ByteWriter out;

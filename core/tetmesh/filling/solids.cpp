@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "core/mesh/disjoint_sets.h"
-#include "core/tetmesh/triangle_tree.h"
+#include "core/tetmesh/triangle_clusters.h"
 #include "core/tetmesh/winding_number.h"
 
 namespace softreel {
@@ -46,12 +46,12 @@ bool is_within(const Bounds& inner, const Bounds& outer) {
 }
 
 /// Whether any triangle of one tree crosses one of another that is moved by `shift`.
-bool any_cross(const TriangleTree& first, const TriangleTree& second, const Vec3& shift) {
+bool any_cross(const TriangleClusters& first, const TriangleClusters& second, const Vec3& shift) {
   std::vector<std::array<Index, 2>> open{{0, 0}};
   while (!open.empty()) {
     const auto [i, j] = open.back();
     open.pop_back();
-    const TriangleTree::Node &a = first.nodes()[at(i)], &b = second.nodes()[at(j)];
+    const TriangleClusters::Node &a = first.nodes()[at(i)], &b = second.nodes()[at(j)];
     if (!overlap(a.min, a.max, b.min + shift, b.max + shift)) continue;
     if (a.is_leaf() && b.is_leaf()) {
       for (Index t = b.begin; t < b.end; ++t) {
@@ -83,7 +83,7 @@ class BoxTree {
     while (!open.empty()) {
       const Index n = open.back();
       open.pop_back();
-      const TriangleTree::Node& node = tree_.nodes()[at(n)];
+      const TriangleClusters::Node& node = tree_.nodes()[at(n)];
       if (!overlap(node.min, node.max, box.min, box.max, reach)) continue;
       if (!node.is_leaf()) {
         open.push_back(n + 1);
@@ -106,7 +106,7 @@ class BoxTree {
     return triangles;
   }
 
-  TriangleTree tree_;
+  TriangleClusters tree_;
 };
 
 /// The parts with what is asked of them made when it is first asked.
@@ -196,8 +196,8 @@ class Joining {
     return std::round(turns[kSamples / 2]);
   }
 
-  const TriangleTree& tree(Index p) {
-    if (!trees_[at(p)]) trees_[at(p)] = std::make_unique<TriangleTree>(surface_.positions, triangles_[at(p)]);
+  const TriangleClusters& tree(Index p) {
+    if (!trees_[at(p)]) trees_[at(p)] = std::make_unique<TriangleClusters>(surface_.positions, triangles_[at(p)]);
     return *trees_[at(p)];
   }
   const WindingNumber& winding(Index p) {
@@ -209,7 +209,7 @@ class Joining {
   const SurfaceParts& parts_;
   BoxTree boxes_;
   std::vector<std::vector<Triangle>> triangles_;  ///< per part
-  std::vector<std::unique_ptr<TriangleTree>> trees_;
+  std::vector<std::unique_ptr<TriangleClusters>> trees_;
   std::vector<std::unique_ptr<WindingNumber>> windings_;
   DisjointSets sets_;
 };

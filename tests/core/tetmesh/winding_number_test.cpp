@@ -86,26 +86,5 @@ TEST(RowCrossings, VisitTheNodesWithAWindingNumber) {
   EXPECT_EQ(count, expected);
 }
 
-TEST(TriangleTree, NearestEqualsBruteForce) {
-  const SurfaceMesh ring = test::make_torus(1, 0.4, 16, 8, Vec3::Zero());
-  const TriangleTree tree(ring.positions, ring.triangles);
-  std::mt19937 random(2);
-  for (int i = 0; i < 300; ++i) {
-    const Vec3 p = random_point(random, 2);
-    double nearest = 1e300;
-    for (const auto& [a, b, c] : ring.triangles) {
-      const auto x = [&](Index v) { return ring.positions[static_cast<std::size_t>(v)]; };
-      nearest = std::min(nearest, (nearest_on_triangle(p, x(a), x(b), x(c)) - p).squaredNorm());
-    }
-    EXPECT_EQ(tree.nearest(p).squared_distance, nearest);
-  }
-}
-
-TEST(NearestOnTriangle, HoldsForTrianglesWithoutArea) {
-  const Vec3 a(0, 0, 0), b(1, 0, 0), c(2, 0, 0), p(1.5, 1, 0);
-  EXPECT_NEAR((nearest_on_triangle(p, a, b, c) - Vec3(1.5, 0, 0)).norm(), 0, 1e-12);
-  EXPECT_EQ(nearest_on_triangle(p, a, a, a), a);
-}
-
 }  // namespace
 }  // namespace softreel
