@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include <Eigen/Dense>
 
 #include "core/tetmesh/boundary_stars.h"
-#include "core/tetmesh/surface_samples.h"
-#include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
 namespace {
@@ -125,7 +122,8 @@ class BoundaryFit::Fit {
       for (const Index corner : stars_.faces[f].nodes) {
         const Vec3 x = 0.5 * (probe_point(p) + position(corner));
         const TriangleTree::Nearest found = tree_.nearest_from(x, probes_[p].place, limit * limit);
-        if (found.squared_distance > limit * limit) gaps.push_back({found.point, x, stars_.faces[f].nodes, true});
+        if (found.triangle >= 0 && found.squared_distance > limit * limit)
+          gaps.push_back({found.point, x, stars_.faces[f].nodes, true});
       }
     }
   }
@@ -335,6 +333,7 @@ class BoundaryFit::Fit {
     matrix.diagonal().array() += kDamping * matrix.trace() + 1e-300;
     return matrix.ldlt().solve(force);
   }
+
   bool relax(std::size_t b) {
     take_star_samples(b);
     Vec3 step = newton_step(b);

@@ -44,7 +44,8 @@ class BoundaryFit {
   BoundaryFit(const BoundaryFit&) = delete;
   BoundaryFit& operator=(const BoundaryFit&) = delete;
 
-  /// Samples, nodes, and middles of edges and faces that are further than `limit` (m) from the other side.
+  /// Samples, nodes, middles of edges and faces, and what lies between these and the corners of faces, that are further
+  /// than `limit` (m) from the other side.
   std::vector<BoundaryGap> gaps(double limit) const;
 
  private:

@@ -25,7 +25,7 @@ inline double first_weight(const Vec3& p, const Vec3& a, const Vec3& b, const Ve
 /// thread-safe.
 ///
 /// Boxes have single precision, about the middle of all and rounded outwards, so that what is nearest is found with all
-/// bits; 27 bytes a triangle. Points must be finite.
+/// bits; 27 bytes a triangle. Corners must be finite; a point that is not finds none.
 class TriangleTree {
  public:
   struct Nearest {
@@ -143,13 +143,13 @@ TriangleTree::Nearest TriangleTree::search(const Vec3& p, Nearest best, double s
   while (count > 0 && best.squared_distance > squared_enough) {
     const Entry entry = open[--count];
     float reach = reach_of(best.squared_distance);
-    if (entry.squared_distance > reach) continue;
+    if (!(entry.squared_distance <= reach)) continue;  // not a number: a point that is not finite finds none
     alignas(32) std::array<float, kWidth> distances;
     Eigen::Map<Lanes, Eigen::AlignedMax>(distances.data()) = squared_distances(node_of(entry), query);
     // The farthest first, so that the nearest is taken next.
     const std::size_t first = count;
     for (Index k = 0; k < kWidth; ++k) {
-      if (distances[at(k)] > reach) continue;
+      if (!(distances[at(k)] <= reach)) continue;
       std::size_t place = count++;
       for (; place > first && open[place - 1].squared_distance < distances[at(k)]; --place)
         open[place] = open[place - 1];

@@ -1,5 +1,7 @@
 #include "core/tetmesh/triangle_tree.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/random.h"
@@ -122,6 +124,14 @@ TEST(TriangleTree, VisitsWhatMeetsABox) {
     const Vec3 &x = soup.positions[at(a)], &y = soup.positions[at(b)], &z = soup.positions[at(c)];
     EXPECT_EQ(visits[t], meets(x.cwiseMin(y).cwiseMin(z), x.cwiseMax(y).cwiseMax(z)) ? 1 : 0) << t;
   }
+}
+
+TEST(TriangleTree, APointThatIsNotFiniteFindsNone) {
+  Random random(6);
+  const SurfaceMesh soup = random_soup(random, 700, 1, Vec3::Zero());
+  const TriangleTree tree(soup.positions, soup.triangles);
+  EXPECT_EQ(tree.nearest(Vec3(std::nan(""), 0, 0)).triangle, -1);
+  EXPECT_EQ(tree.nearest(Vec3::Constant(std::nan(""))).triangle, -1);
 }
 
 TEST(TriangleTree, MayBeEmpty) {
