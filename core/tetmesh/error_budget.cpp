@@ -28,8 +28,11 @@ constexpr double kCertain = 0.98;
 
 /// In the first rounds, which are far from the goal, what a longer fit would mend is let be: fewer sweeps, and gaps of
 /// more than so many budgets.
-constexpr int kFirstRounds = 2, kFirstSweeps = 2, kCountSweeps = 3, kSweeps = 4;
+constexpr int kFirstRounds = 2, kFirstSweeps = 2, kSweeps = 4;
 constexpr double kFirstLimit = 1.5;
+
+/// Sweeps of each fit on the way to a count.
+constexpr int kCountSweeps = 3;
 
 /// So many fillings an error may take. The last ones go after single places: what a refinement mends may spoil what is
 /// beside it.
@@ -88,7 +91,8 @@ double guess_error(double area, double tets) {
 struct CountedFilling {
   GradedFilling filling;
   double count = 0;        ///< of tetrahedra
-  double widest = 0;       ///< of the gaps that are known, m
+  double widest = 0;       ///< gap above the limit that was asked, m; 0: there is none
+  std::size_t loose = 0;   ///< places of loose pieces
   bool is_fitted = false;  ///< not where base edges alone took too many
 };
 
@@ -143,7 +147,7 @@ class Filling {
       GradedFilling filling = fill();
       const auto count = static_cast<double>(filling.stuffed.mesh.tets.size());
       const bool is_too_many = count > (1 + kCountTolerance) * params_.tets;
-      if (is_too_many && !last) return {std::move(filling), count, 0, false};
+      if (is_too_many && !last) return {std::move(filling), count, 0, 0, false};
       if (is_too_many && mendings > 0) break;
       if (is_too_many && last->count > 0 && retries++ < kRetries) {
         last->added *= (params_.tets - last->count) / (count - last->count);
@@ -155,8 +159,8 @@ class Filling {
       if (mendings == 0) best = {};  // what met the count is kept until something better has
       last = find_refinement(filling.stuffed, count);
       const double width = widest(last->gaps);
-      if (mendings > 0 && width > best.widest) break;  // what was mended spoilt something else
-      best = {std::move(filling), count, width, true};
+      if (mendings > 0 && width > best.widest && last->loose.size() >= best.loose) break;  // it spoilt something else
+      best = {std::move(filling), count, width, last->loose.size(), true};
       if (is_too_many || is_hopeless(count)) break;
       if (count >= (1 - kCountTolerance) * params_.tets && mendings++ == kMendings) break;
       if (!refine(*last, best.filling.stuffed.mesh.nodes)) break;

@@ -1,6 +1,8 @@
 /// Triangles in the order of a tree's leaves, with the corners that they need.
 #pragma once
 
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "core/base/types.h"
@@ -16,8 +18,11 @@ class TriangleSorter {
   /// their centroids' box.
   void split(Index begin, Index middle, Index end);
 
-  const std::vector<Index>& order() const { return order_; }
-  std::vector<Index> take_order() { return std::move(order_); }
+  /// The order; frees the rest.
+  std::vector<Index> take_order() {
+    std::vector<Vec3>().swap(centroids_);
+    return std::move(order_);
+  }
 
  private:
   std::vector<Vec3> centroids_;  ///< per triangle

@@ -1,6 +1,7 @@
 /// A binary tree of clusters of triangles: what crosses what, and the frame of fast winding numbers.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/base/types.h"
@@ -9,6 +10,7 @@
 namespace softreel {
 
 /// Built by halving triangles along the longest side of their centroids' box. The same input gives the same tree.
+/// Reading is thread-safe.
 class TriangleClusters {
  public:
   /// A node covers triangles [begin, end) of `order()`. Its left child is the next node; `right` is 0 for leaves.
@@ -25,6 +27,7 @@ class TriangleClusters {
   /// Gives back the room of the nodes, for one who has what it needs of them: only order() and corners() remain.
   void drop_nodes() { std::vector<Node>().swap(nodes_); }
   const std::vector<Index>& order() const { return triangles_.order(); }
+  /// Corners of the triangle at a place in order().
   std::array<Vec3, 3> corners(Index place) const { return triangles_.corners(place); }
 
  private:

@@ -50,7 +50,8 @@ class TriangleTree {
   /// nearer than sqrt(squared_enough) the first one met will do; there may be none within sqrt(squared_limit).
   Nearest nearest_from(const Vec3& p, Index place, double squared_enough = -1, double squared_limit = 1e300) const;
 
-  /// Calls visit(place) for triangles whose box meets(min, max); these boxes may be larger by rounding.
+  /// Calls visit(place) for triangles whose box meets(min, max); these boxes may be larger by rounding, or
+  /// smaller by a last bit.
   template <typename Meets, typename Visit>
   void visit(const Meets& meets, const Visit& visit) const;
 
@@ -68,7 +69,7 @@ class TriangleTree {
   struct Node {
     std::array<Lanes, 3> min, max;
   };
-  /// A node, by its level and its number in there. At level 0 children are triangles, by their places.
+  /// A node, by its level and its number in there; of level -1, a triangle by its place.
   struct Entry {
     float squared_distance;
     std::int32_t level;
