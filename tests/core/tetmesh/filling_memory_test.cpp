@@ -25,6 +25,8 @@ Taken fill_torus(const TetrahedralizeParams& params, Index around = 96, Index ac
   const Threads threads(1);
   const Log silent{[](const std::string&) {}, [](const std::string&) {}};
   StageTimes times;
+  // The program's own pages, 2 MB, come in where they are first run: filling once keeps them out of the account.
+  (void)tetrahedralize(surface, params, "torus", threads, silent, times);
   malloc_trim(0);  // what other tests gave back is not to be filled unseen
   test::reset_peak_memory();
   const std::int64_t before = test::peak_memory();
@@ -33,7 +35,7 @@ Taken fill_torus(const TetrahedralizeParams& params, Index around = 96, Index ac
   const Taken taken{static_cast<double>(test::peak_memory() - before), static_cast<double>(mesh.tets.size()),
                     static_cast<double>(surface.triangles.size())};
   EXPECT_GT(taken.a_tet(), 30) << "the account sees the mesh";
-  ::testing::Test::RecordProperty("bytes", std::to_string(taken.a_tet()));
+  ::testing::Test::RecordProperty("bytes_" + std::to_string(mesh.tets.size()), std::to_string(taken.a_tet()));
   return taken;
 }
 
