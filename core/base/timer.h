@@ -8,6 +8,11 @@
 
 namespace softreel {
 
+/// Wall time since `start`, s.
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// Seconds and calls per stage name. Names are paths with '/', so that a report can show the tree. Thread-safe.
 class StageTimes {
  public:
@@ -30,9 +35,7 @@ class ScopedStage {
  public:
   ScopedStage(StageTimes& times, std::string name)
       : times_(times), name_(std::move(name)), start_(std::chrono::steady_clock::now()) {}
-  ~ScopedStage() {
-    times_.add(name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
-  }
+  ~ScopedStage() { times_.add(name_, seconds_since(start_)); }
   ScopedStage(const ScopedStage&) = delete;
   ScopedStage& operator=(const ScopedStage&) = delete;
 

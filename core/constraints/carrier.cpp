@@ -5,7 +5,7 @@
 namespace softreel {
 namespace {
 
-constexpr double kFlat = 1e-3;  ///< share of the volume at rest below which an element carries nothing
+constexpr double kFlatElement = 1e-3;  ///< share of the volume at rest below which an element carries nothing
 constexpr double kInside = 1 + 1e-9;
 /// A walk that ends with more has lost its way: a surface is within an element or so of the tetrahedra that carry it.
 constexpr double kLost = 4;
@@ -23,7 +23,7 @@ Carrier carrier_in(const CarrierMesh& mesh, Index element, const Vec3& point) {
   const Tet& tet = mesh.tets[static_cast<std::size_t>(element)];
   const TetNodes x = nodes_of(tet, mesh.positions), rest = nodes_of(tet, mesh.rest_positions);
   const double volume = 6 * tet_volume(x[0], x[1], x[2], x[3]);
-  if (!(volume > kFlat * 6 * tet_volume(rest[0], rest[1], rest[2], rest[3]))) return {};
+  if (!(volume > kFlatElement * 6 * tet_volume(rest[0], rest[1], rest[2], rest[3]))) return {};
   const std::array<Vec3, 4> d{x[0] - point, x[1] - point, x[2] - point, x[3] - point};
   Carrier carrier{element, {}, 0};
   std::array<double, 4>& w = carrier.weights;

@@ -10,7 +10,7 @@ namespace softreel {
 namespace {
 
 /// A volume below this share of what its axes could span is that of a flat node.
-constexpr double kFlat = 1e-12;
+constexpr double kFlatNode = 1e-12;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ FollowedNode::FollowedNode(const SceneAnimation& scene, const SceneClip& clip, I
       reference_frame ? pose_scene(scene, &clip, timing.seconds(*reference_frame)) : pose_scene(scene, nullptr, 0);
   reference_ = pose.nodes[static_cast<std::size_t>(node)];
   const Mat3& axes = reference_.linear;
-  if (!(std::abs(axes.determinant()) > kFlat * axes.col(0).norm() * axes.col(1).norm() * axes.col(2).norm()))
+  if (!(std::abs(axes.determinant()) > kFlatNode * axes.col(0).norm() * axes.col(1).norm() * axes.col(2).norm()))
     throw input_error(
         fmt::format("node '{}' has no extent {}, so that its motion from there cannot be told.\n  Accepted: a node of "
                     "a scale that is not 0. Choose another reference frame.",

@@ -11,7 +11,7 @@ namespace softreel {
 namespace {
 
 /// A triangle is flat if its area is below this share of its longest edge's square.
-constexpr double kFlat = 1e-9;
+constexpr double kFlatTriangle = 1e-9;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -22,7 +22,7 @@ Vec3 weighted(const Corners& corners, const Vec3& weights) {
 bool is_flat(const Corners& corners) {
   const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0];
   const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
-  return !(a.cross(b).norm() > kFlat * longest);
+  return !(a.cross(b).norm() > kFlatTriangle * longest);
 }
 
 /// Two edges and the normal, in columns.

@@ -6,7 +6,7 @@ namespace softreel {
 namespace {
 
 /// Surroundings whose volume is below this share of what their axes could span had no extent.
-constexpr double kFlat = 1e-9;
+constexpr double kFlatSurroundings = 1e-9;
 
 LocalMotion motion_of(const Transform& transform) {
   LocalMotion motion{Mat3::Identity(), transform.pivot, transform.pivot + transform.translate};
@@ -27,7 +27,7 @@ LocalMotion motion_between(const LocalMotion& then, const LocalMotion& now) {
   if (then.linear == now.linear && then.from == now.from) return between;
   const Mat3& axes = then.linear;
   const double span = axes.col(0).norm() * axes.col(1).norm() * axes.col(2).norm();
-  if (!(std::abs(axes.determinant()) > kFlat * span)) return between;
+  if (!(std::abs(axes.determinant()) > kFlatSurroundings * span)) return between;
   between.linear = now.linear * axes.inverse();
   between.to += now.linear * (then.from - now.from);
   return between;

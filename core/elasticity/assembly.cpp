@@ -9,8 +9,8 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kElementGrain = 1024;
-constexpr std::int64_t kRowGrain = 256;
+constexpr std::int64_t kAssemblyGrain = 1024;
+constexpr std::int64_t kAssembledRowGrain = 256;
 
 Mat3 cross_matrix(const Vec3& v) {
   Mat3 m;
@@ -86,7 +86,7 @@ void find_stiffness_terms(const ElasticBody& body, std::span<const Vec3> positio
     }
     return different;
   };
-  terms.uniform_ratio = threads.sum_chunks(static_cast<std::int64_t>(elements), kElementGrain, chunk) == 0;
+  terms.uniform_ratio = threads.sum_chunks(static_cast<std::int64_t>(elements), kAssemblyGrain, chunk) == 0;
 }
 
 StiffnessAssembler::StiffnessAssembler(const std::vector<Tet>& tets, const BlockPattern& pattern) {
@@ -171,7 +171,7 @@ void StiffnessAssembler::assemble(const StiffnessTerms& terms, std::span<const d
   matrix.values.resize(9 * static_cast<std::size_t>(matrix.pattern.blocks()));
   const bool curved = !terms.curvatures.empty();
   const bool uniform = terms.uniform_ratio;
-  threads.for_chunks(matrix.pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(matrix.pattern.rows(), kAssembledRowGrain, [&](std::int64_t begin, std::int64_t end) {
     if (curved && uniform) gather_rows<true, true>(terms, node_terms, matrix, begin, end);
     if (curved && !uniform) gather_rows<false, true>(terms, node_terms, matrix, begin, end);
     if (!curved && uniform) gather_rows<true, false>(terms, node_terms, matrix, begin, end);

@@ -12,9 +12,9 @@ namespace softreel {
 namespace {
 
 /// Elements and nodes per chunk: some ten microseconds of work each; elements a multiple of the lanes.
-constexpr std::int64_t kElementGrain = 1024;
-constexpr std::int64_t kNodeGrain = 1024;
-static_assert(kElementGrain % kRotationLanes == 0 && kElementGrain % kElementLanes == 0);
+constexpr std::int64_t kBodyElementGrain = 1024;
+constexpr std::int64_t kBodyNodeGrain = 1024;
+static_assert(kBodyElementGrain % kRotationLanes == 0 && kBodyElementGrain % kElementLanes == 0);
 
 /// Eq. (3) on one batch of elements [begin, end), at most kRotationLanes; lanes without an element repeat the last one.
 void find_batch(const ElasticBody& body, std::span<const Vec3> positions, std::span<Quaternion> rotations,
@@ -42,7 +42,7 @@ void find_batch(const ElasticBody& body, std::span<const Vec3> positions, std::s
 
 std::int64_t find_all_consistent(const ElasticBody& body, std::span<const Vec3> positions,
                                  std::span<Quaternion> rotations, const Threads& threads) {
-  constexpr std::int64_t kBatchGrain = kElementGrain / kElementLanes;
+  constexpr std::int64_t kBatchGrain = kBodyElementGrain / kElementLanes;
   const std::span<const ElementBatch> batches = body.batches;
   return static_cast<std::int64_t>(threads.sum_chunks(
       static_cast<std::int64_t>(batches.size()), kBatchGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -53,7 +53,7 @@ std::int64_t find_all_consistent(const ElasticBody& body, std::span<const Vec3> 
 
 std::int64_t count_flat(const ElasticBody& body, std::span<const Vec3> positions, const Threads& threads) {
   return static_cast<std::int64_t>(threads.sum_chunks(
-      static_cast<std::int64_t>(body.tets.size()), kElementGrain, [&](std::int64_t begin, std::int64_t end) {
+      static_cast<std::int64_t>(body.tets.size()), kBodyElementGrain, [&](std::int64_t begin, std::int64_t end) {
         double flat = 0;
         for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e)
           if (deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], positions)).determinant() <
@@ -113,7 +113,7 @@ void find_rotations(const ElasticBody& body, RotationMethod method, std::span<co
     find_rival_rotations(body, method, positions, rotations, threads);
     return;
   }
-  threads.for_chunks(static_cast<std::int64_t>(body.tets.size()), kElementGrain,
+  threads.for_chunks(static_cast<std::int64_t>(body.tets.size()), kBodyElementGrain,
                      [&](std::int64_t begin, std::int64_t end) {
                        for (std::int64_t e = begin; e < end; e += kRotationLanes)
                          find_batch(body, positions, rotations, static_cast<std::size_t>(e),
@@ -131,7 +131,7 @@ std::int64_t find_rotations_and_flat(const ElasticBody& body, RotationMethod met
 void find_stresses(const ElasticBody& body, std::span<const Vec3> positions, std::span<const Quaternion> rotations,
                    std::span<Mat3> stresses, const Threads& threads) {
   threads.for_chunks(
-      static_cast<std::int64_t>(body.tets.size()), kElementGrain, [&](std::int64_t begin, std::int64_t end) {
+      static_cast<std::int64_t>(body.tets.size()), kBodyElementGrain, [&](std::int64_t begin, std::int64_t end) {
         for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
           const Mat3 F = deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], positions));
           stresses[e] = body.shapes[e].volume * corotated_stress(body.laws[e], rotations[e].toRotationMatrix(), F);
@@ -142,23 +142,24 @@ void find_stresses(const ElasticBody& body, std::span<const Vec3> positions, std
 void gather_forces(const ElasticBody& body, std::span<const Mat3> stresses, std::span<Vec3> forces,
                    const Threads& threads) {
   const NodeElements& gather = body.node_elements;
-  threads.for_chunks(static_cast<std::int64_t>(forces.size()), kNodeGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      Vec3 force = Vec3::Zero();
-      for (std::int64_t k = gather.offsets[i]; k < gather.offsets[i + 1]; ++k) {
-        const std::uint32_t entry = gather.entries[static_cast<std::size_t>(k)];
-        const std::size_t e = entry / 4;
-        force -= stresses[e] * body.shapes[e].gradients.col(entry % 4);
-      }
-      forces[i] = force;
-    }
-  });
+  threads.for_chunks(static_cast<std::int64_t>(forces.size()), kBodyNodeGrain,
+                     [&](std::int64_t begin, std::int64_t end) {
+                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                         Vec3 force = Vec3::Zero();
+                         for (std::int64_t k = gather.offsets[i]; k < gather.offsets[i + 1]; ++k) {
+                           const std::uint32_t entry = gather.entries[static_cast<std::size_t>(k)];
+                           const std::size_t e = entry / 4;
+                           force -= stresses[e] * body.shapes[e].gradients.col(entry % 4);
+                         }
+                         forces[i] = force;
+                       }
+                     });
 }
 
 double elastic_energy(const ElasticBody& body, std::span<const Vec3> positions, std::span<const Quaternion> rotations,
                       const Threads& threads) {
   return threads.sum_chunks(
-      static_cast<std::int64_t>(body.tets.size()), kElementGrain, [&](std::int64_t begin, std::int64_t end) {
+      static_cast<std::int64_t>(body.tets.size()), kBodyElementGrain, [&](std::int64_t begin, std::int64_t end) {
         double sum = 0;
         for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
           const Mat3 F = deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], positions));

@@ -8,7 +8,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kNodeGrain = 1024;
+constexpr std::int64_t kSumGrain = 1024;
 constexpr std::size_t kSlabElements = kSlabBatches * kElementLanes;
 static_assert(4 * kSlabElements <= std::numeric_limits<std::uint16_t>::max());
 
@@ -72,7 +72,7 @@ void add_slabs(const NodeSlabs& slabs, const AlignedVector<double>& sums, std::s
   using Lanes = Eigen::Array4d;
   CHECK(vectors.size() + 1 == slabs.node_offsets.size());
   CHECK(sums.size() == 4 * slabs.sums());
-  threads.for_chunks(static_cast<std::int64_t>(vectors.size()), kNodeGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(static_cast<std::int64_t>(vectors.size()), kSumGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       Lanes sum = Lanes::Zero();
       for (std::uint32_t k = slabs.node_offsets[i]; k < slabs.node_offsets[i + 1]; ++k)

@@ -11,7 +11,7 @@ namespace softreel {
 namespace {
 
 /// Elements per chunk: some hundred microseconds of work.
-constexpr std::int64_t kElementGrain = 512;
+constexpr std::int64_t kRivalGrain = 512;
 
 /// Share of the longer of two edges below which a shorter edge, or a distance from a line, is round-off.
 constexpr double kSmallestShare = 1e-12;
@@ -83,7 +83,7 @@ Quaternion find_qr_rotation(const TetNodes& rest, const TetNodes& deformed, cons
 
 void smooth_rotations(const ElasticBody& body, std::span<const Quaternion> rotations, std::span<Quaternion> smoothed,
                       const Threads& threads) {
-  threads.for_chunks(static_cast<std::int64_t>(body.tets.size()), kElementGrain,
+  threads.for_chunks(static_cast<std::int64_t>(body.tets.size()), kRivalGrain,
                      [&](std::int64_t begin, std::int64_t end) {
                        for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e)
                          smoothed[e] = smoothed_rotation(body, rotations, e);
@@ -101,7 +101,7 @@ void find_rival_rotations(const ElasticBody& body, RotationMethod method, std::s
   CHECK((method == RotationMethod::Paper || method == RotationMethod::Qr));
   const auto find = method == RotationMethod::Paper ? find_paper_rotation : find_qr_rotation;
   threads.for_chunks(
-      static_cast<std::int64_t>(body.tets.size()), kElementGrain, [&](std::int64_t begin, std::int64_t end) {
+      static_cast<std::int64_t>(body.tets.size()), kRivalGrain, [&](std::int64_t begin, std::int64_t end) {
         for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e)
           rotations[e] =
               find(nodes_of(body.tets[e], body.rest_positions), nodes_of(body.tets[e], positions), rotations[e]);

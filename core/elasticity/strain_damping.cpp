@@ -7,7 +7,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kElementGrain = 256;
+constexpr std::int64_t kDampingGrain = 256;
 
 /// Polar ones, or identities with rotation None.
 std::vector<Quaternion> find_polar_rotations(const ElasticBody& body, RotationMethod rotation,
@@ -59,7 +59,7 @@ std::vector<Mat3> find_stretches(const ElasticBody& body, RotationMethod rotatio
     for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e)
       stretches[e] = find_stretch(rotations[e].toRotationMatrix(), gradient_of(body, e, positions));
   };
-  threads.for_chunks(static_cast<std::int64_t>(stretches.size()), kElementGrain, chunk);
+  threads.for_chunks(static_cast<std::int64_t>(stretches.size()), kDampingGrain, chunk);
   return stretches;
 }
 
@@ -72,7 +72,7 @@ DampingEnergy find_damping(const ElasticBody& body, const StrainDamping& damping
   }
   const auto elements = static_cast<std::int64_t>(body.tets.size());
   DampingEnergy energy;
-  energy.value = threads.sum_chunks(elements, kElementGrain, [&](std::int64_t begin, std::int64_t end) {
+  energy.value = threads.sum_chunks(elements, kDampingGrain, [&](std::int64_t begin, std::int64_t end) {
     double sum = 0;
     for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
       const double factor = damping.ratios[e] * body.shapes[e].volume;
@@ -84,7 +84,7 @@ DampingEnergy find_damping(const ElasticBody& body, const StrainDamping& damping
     }
     return sum;
   });
-  energy.noise = threads.sum_chunks(elements, kElementGrain, [&](std::int64_t begin, std::int64_t end) {
+  energy.noise = threads.sum_chunks(elements, kDampingGrain, [&](std::int64_t begin, std::int64_t end) {
     double sum = 0;
     for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e)
       if (damping.ratios[e] != 0) sum += stresses[e].norm() * gradient_noise(body, e, positions);

@@ -9,7 +9,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kElementGrain = 1024;
+constexpr std::int64_t kTensionGrain = 1024;
 
 /// False where no kappa_k exceeds `least`; the twin of that in the kernel of a step.
 bool may_be_tense(const ElasticLaw& law, const Mat3& strain, double least) {
@@ -40,7 +40,7 @@ std::vector<Mat3> find_tension_curvatures(const ElasticBody& body, const StepSou
   const double reach = source.seconds.position, share = std::sqrt(source.seconds.velocity * reach);
   std::vector<Mat3> curvatures(body.tets.size(), Mat3::Zero());
   const double tense = threads.sum_chunks(
-      static_cast<std::int64_t>(curvatures.size()), kElementGrain, [&](std::int64_t begin, std::int64_t end) {
+      static_cast<std::int64_t>(curvatures.size()), kTensionGrain, [&](std::int64_t begin, std::int64_t end) {
         double found = 0;
         for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
           const ElasticLaw& law = body.laws[e];

@@ -64,12 +64,6 @@ std::vector<Index> envelope(const BlockPattern& pattern, const std::vector<Index
   return first;
 }
 
-std::vector<Index> inverted(const std::vector<Index>& order) {
-  std::vector<Index> place(order.size());
-  for (std::size_t p = 0; p < order.size(); ++p) place[static_cast<std::size_t>(order[p])] = static_cast<Index>(p);
-  return place;
-}
-
 /// Dot product in 8 lanes: the order of summation is fixed by the length alone.
 double dot(const double* a, const double* b, std::int64_t n) {
   using Lanes = Eigen::Array<double, 8, 1>;
@@ -109,6 +103,12 @@ std::array<double, 9> dot_rows(const std::array<double*, 3>& a, const std::array
 }
 
 }  // namespace
+
+std::vector<Index> inverted(const std::vector<Index>& order) {
+  std::vector<Index> place(order.size());
+  for (std::size_t p = 0; p < order.size(); ++p) place[static_cast<std::size_t>(order[p])] = static_cast<Index>(p);
+  return place;
+}
 
 double factor_work(const BlockPattern& pattern) {
   const std::vector<Index> order = elimination_order(pattern);

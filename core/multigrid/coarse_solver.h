@@ -12,6 +12,9 @@
 
 namespace softreel {
 
+/// The place of each row in an order of all of them.
+std::vector<Index> inverted(const std::vector<Index>& order);
+
 /// Multiply-adds that factoring a matrix of this pattern takes.
 double factor_work(const BlockPattern& pattern);
 

@@ -7,7 +7,7 @@ namespace softreel {
 namespace {
 
 /// Iterations that must at least halve the residual; a sound cycle needs two or three.
-constexpr int kStagnation = 12;
+constexpr int kFloatStagnation = 12;
 
 /// Of a guess's energy, what must be new to the direction before; less is rounding.
 constexpr double kLeastGuess = 1e-5;
@@ -113,7 +113,7 @@ SolveReport FloatSolver::solve(double target, int max_iterations, SolveMethod me
       milestone = report.residual;
       milestone_iteration = report.iterations;
     }
-    if (report.iterations - milestone_iteration >= kStagnation || !std::isfinite(rr)) return report;
+    if (report.iterations - milestone_iteration >= kFloatStagnation || !std::isfinite(rr)) return report;
   }
   report.status = SolveStatus::MaxIterations;
   return report;

@@ -125,12 +125,6 @@ std::vector<Index> order_by_color(const BlockPattern& pattern, std::vector<Index
   return order;
 }
 
-std::vector<Index> inverted(const std::vector<Index>& order) {
-  std::vector<Index> inverse(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) inverse[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
-  return inverse;
-}
-
 /// The pattern with rows and columns renumbered; source[b] is the old position of the mirror of new block b.
 BlockPattern permuted(const BlockPattern& pattern, const std::vector<Index>& order, std::vector<std::int64_t>& source) {
   const std::vector<Index> number = inverted(order);

@@ -17,7 +17,7 @@ namespace softreel {
 namespace {
 
 /// Of |diag(A) y|, in r - A y after a solve in float.
-constexpr double kRoundingUnits = 1;
+constexpr double kFloatSolveRounding = 1;
 
 /// Above, one sweep takes more than twice the iterations that it takes at 0.3, and two take half as many in about the
 /// same time (0.49, bars of 11k and 67k tetrahedra); at 0.47 they take longer.
@@ -233,7 +233,7 @@ FloatCorrection Multigrid::correct_in_float(std::span<const Vec3> r, double targ
   }
   FloatCorrection correction;
   correction.report = levels.float_solver.solve(target / norm, max_iterations, levels.params.method, levels.guesses);
-  correction.rounding = kRoundingUnits * std::numeric_limits<float>::epsilon() * levels.gather_correction(norm, y);
+  correction.rounding = kFloatSolveRounding * std::numeric_limits<float>::epsilon() * levels.gather_correction(norm, y);
   return correction;
 }
 

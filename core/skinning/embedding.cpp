@@ -12,7 +12,7 @@ namespace {
 
 using Weights = std::array<double, 4>;
 
-constexpr std::int64_t kGrain = 512;
+constexpr std::int64_t kEmbeddingGrain = 512;
 /// Round-off by which a weight may be negative in an element that holds the point.
 constexpr double kInside = -1e-12;
 /// Weights beyond this would magnify the deformation: such points go to the boundary (embedding.h).
@@ -218,10 +218,11 @@ Embedding embed_points(const std::vector<Vec3>& points, const std::vector<Vec3>&
   embedding.elements.resize(points.size());
   embedding.weights.resize(points.size());
   const Embedder embedder(points, normals, mesh);
-  threads.for_chunks(static_cast<std::int64_t>(points.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-      embedder.embed(i, embedding.elements[i], embedding.weights[i]);
-  });
+  threads.for_chunks(static_cast<std::int64_t>(points.size()), kEmbeddingGrain,
+                     [&](std::int64_t begin, std::int64_t end) {
+                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                         embedder.embed(i, embedding.elements[i], embedding.weights[i]);
+                     });
   return embedding;
 }
 

@@ -7,7 +7,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 2048;
+constexpr std::int64_t kSkinningGrain = 2048;
 
 /// Edge vectors of an element from its first node, as columns.
 Mat3 edges_of(const Tet& tet, const std::vector<Vec3>& x) {
@@ -39,21 +39,22 @@ std::vector<Mat3> nodal_gradients(const TetMesh& mesh, const std::vector<Vec3>& 
                                   const std::vector<bool>& wanted, const Threads& threads) {
   const NodeElements list = elements_of_nodes(mesh);
   std::vector<Mat3> gradients(mesh.nodes.size(), Mat3::Identity());
-  threads.for_chunks(static_cast<std::int64_t>(mesh.nodes.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto node = static_cast<std::size_t>(begin); node < static_cast<std::size_t>(end); ++node) {
-      if (!wanted[node] || list.offsets[node] == list.offsets[node + 1]) continue;
-      Mat3 sum = Mat3::Zero();
-      double volume = 0;
-      for (Index i = list.offsets[node]; i < list.offsets[node + 1]; ++i) {
-        const Tet& tet = mesh.tets[at(list.elements[at(i)])];
-        const Mat3 rest = edges_of(tet, mesh.nodes);
-        const double weight = mesh.fill_of(at(list.elements[at(i)])) * rest.determinant();
-        sum += weight * (edges_of(tet, node_positions) * rest.inverse());
-        volume += weight;
-      }
-      gradients[node] = sum / volume;
-    }
-  });
+  threads.for_chunks(static_cast<std::int64_t>(mesh.nodes.size()), kSkinningGrain,
+                     [&](std::int64_t begin, std::int64_t end) {
+                       for (auto node = static_cast<std::size_t>(begin); node < static_cast<std::size_t>(end); ++node) {
+                         if (!wanted[node] || list.offsets[node] == list.offsets[node + 1]) continue;
+                         Mat3 sum = Mat3::Zero();
+                         double volume = 0;
+                         for (Index i = list.offsets[node]; i < list.offsets[node + 1]; ++i) {
+                           const Tet& tet = mesh.tets[at(list.elements[at(i)])];
+                           const Mat3 rest = edges_of(tet, mesh.nodes);
+                           const double weight = mesh.fill_of(at(list.elements[at(i)])) * rest.determinant();
+                           sum += weight * (edges_of(tet, node_positions) * rest.inverse());
+                           volume += weight;
+                         }
+                         gradients[node] = sum / volume;
+                       }
+                     });
   return gradients;
 }
 
@@ -81,15 +82,16 @@ std::vector<Vec3> skin_positions(const std::vector<Vec3>& rest_points, const Emb
   CHECK(rest_points.size() == embedding.elements.size());
   CHECK(node_positions.size() == mesh.nodes.size());
   std::vector<Vec3> positions(rest_points.size());
-  threads.for_chunks(static_cast<std::int64_t>(positions.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      const Tet& tet = mesh.tets[at(embedding.elements[i])];
-      Vec3 displacement = Vec3::Zero();
-      for (std::size_t k = 0; k < 4; ++k)
-        displacement += embedding.weights[i][k] * (node_positions[at(tet[k])] - mesh.nodes[at(tet[k])]);
-      positions[i] = rest_points[i] + displacement;
-    }
-  });
+  threads.for_chunks(
+      static_cast<std::int64_t>(positions.size()), kSkinningGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+          const Tet& tet = mesh.tets[at(embedding.elements[i])];
+          Vec3 displacement = Vec3::Zero();
+          for (std::size_t k = 0; k < 4; ++k)
+            displacement += embedding.weights[i][k] * (node_positions[at(tet[k])] - mesh.nodes[at(tet[k])]);
+          positions[i] = rest_points[i] + displacement;
+        }
+      });
   return positions;
 }
 
@@ -99,16 +101,18 @@ std::vector<Vec3> skin_normals(const std::vector<Vec3>& rest_normals, const Embe
   CHECK(node_positions.size() == mesh.nodes.size());
   const std::vector<Mat3> gradients = nodal_gradients(mesh, node_positions, carrying_nodes(embedding, mesh), threads);
   std::vector<Vec3> normals(rest_normals.size());
-  threads.for_chunks(static_cast<std::int64_t>(normals.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      const Tet& tet = mesh.tets[at(embedding.elements[i])];
-      Mat3 gradient = Mat3::Zero();
-      for (std::size_t k = 0; k < 4; ++k) gradient += embedding.weights[i][k] * gradients[at(tet[k])];
-      const Vec3 normal = cofactor(gradient) * rest_normals[i];
-      const double length = normal.norm();
-      normals[i] = length > 0 ? Vec3(normal / length) : rest_normals[i];  // flattened to a line: no direction is right
-    }
-  });
+  threads.for_chunks(
+      static_cast<std::int64_t>(normals.size()), kSkinningGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+          const Tet& tet = mesh.tets[at(embedding.elements[i])];
+          Mat3 gradient = Mat3::Zero();
+          for (std::size_t k = 0; k < 4; ++k) gradient += embedding.weights[i][k] * gradients[at(tet[k])];
+          const Vec3 normal = cofactor(gradient) * rest_normals[i];
+          const double length = normal.norm();
+          normals[i] =
+              length > 0 ? Vec3(normal / length) : rest_normals[i];  // flattened to a line: no direction is right
+        }
+      });
   return normals;
 }
 
@@ -126,17 +130,18 @@ std::vector<double> skin_values(const std::vector<double>& element_values, const
   for (std::size_t n = 0; n < sums.size(); ++n)
     if (volumes[n] > 0) sums[n] /= volumes[n];
   std::vector<double> values(embedding.elements.size());
-  threads.for_chunks(static_cast<std::int64_t>(values.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      const Tet& tet = mesh.tets[at(embedding.elements[i])];
-      std::array<double, 4> nodal{};
-      for (std::size_t k = 0; k < 4; ++k) nodal[k] = sums[at(tet[k])];
-      double value = 0;
-      for (std::size_t k = 0; k < 4; ++k) value += embedding.weights[i][k] * nodal[k];
-      const auto [least, most] = std::minmax_element(nodal.begin(), nodal.end());
-      values[i] = std::clamp(value, *least, *most);
-    }
-  });
+  threads.for_chunks(static_cast<std::int64_t>(values.size()), kSkinningGrain,
+                     [&](std::int64_t begin, std::int64_t end) {
+                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                         const Tet& tet = mesh.tets[at(embedding.elements[i])];
+                         std::array<double, 4> nodal{};
+                         for (std::size_t k = 0; k < 4; ++k) nodal[k] = sums[at(tet[k])];
+                         double value = 0;
+                         for (std::size_t k = 0; k < 4; ++k) value += embedding.weights[i][k] * nodal[k];
+                         const auto [least, most] = std::minmax_element(nodal.begin(), nodal.end());
+                         values[i] = std::clamp(value, *least, *most);
+                       }
+                     });
   return values;
 }
 

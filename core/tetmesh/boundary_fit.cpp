@@ -7,14 +7,15 @@
 #include <Eigen/Dense>
 
 #include "core/tetmesh/boundary_stars.h"
+#include "core/tetmesh/face_samples.h"
 
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 256;
+constexpr std::int64_t kFitGrain = 256;
 
-/// A node goes no further than this towards the nearest point of the surface, and a face is drawn to no sample further
-/// away, in lengths of their longest edge: what is further away is not their own surface.
+/// A node goes no further than this towards the nearest point of the surface, in lengths of its longest edge: what is
+/// further away is not its own surface.
 constexpr double kReach = 1.0;
 
 /// Samples nearer than this share of the tolerance are let be.
@@ -23,8 +24,11 @@ constexpr double kNear = 0.8;
 /// Newton's steps are damped by this share of the matrix's trace.
 constexpr double kDamping = 0.05;
 
-/// A face is drawn by the farthest of its samples, and by about so many others.
-constexpr Index kFaceSamples = 12;
+/// Barycentric weight of `a` at a point of a triangle's plane.
+double first_weight(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 area = (b - a).cross(c - a);
+  return area.dot((b - p).cross(c - p)) / area.squaredNorm();
+}
 
 }  // namespace
 
@@ -41,12 +45,12 @@ class BoundaryFit::Fit {
         memory_(memory),
         stars_(stuffed),
         near_(std::pow(kNear * params.tolerance * stuffed.mesh.lattice.spacing, 2)),
-        wanted_(std::pow(params.tolerance * stuffed.mesh.lattice.spacing, 2)) {}
+        wanted_(std::pow(params.tolerance * stuffed.mesh.lattice.spacing, 2)),
+        face_samples_(mesh_, stars_, samples, near_, threads) {}
 
   void run() {
     const std::vector<std::array<Vec3, 3>> corners = stars_.face_corners(mesh_);
-    sample_faces_.assign(samples_.size(), -1);
-    if (memory_ != nullptr) memory_->find_sample_faces(corners, sample_faces_);
+    if (memory_ != nullptr) memory_->find_sample_faces(corners, face_samples_.faces());
     probes_.resize(stars_.nodes.size() + stars_.edges.size() + stars_.faces.size());
     std::vector<Vec3> before;
     before.reserve(stars_.nodes.size());
@@ -54,7 +58,7 @@ class BoundaryFit::Fit {
     draw_to_surface();
     moved_.assign(stars_.nodes.size(), true);
     for (int sweep = 0; sweep < params_.sweeps; ++sweep) {
-      pair_samples();
+      face_samples_.pair(moved_);
       find_probes();
       moved_.assign(stars_.nodes.size(), false);
       bool any = false;
@@ -64,21 +68,21 @@ class BoundaryFit::Fit {
       }
       if (!any) break;
     }
-    pair_samples();
+    face_samples_.pair(moved_);
     find_probes();
     if (memory_ == nullptr) return;
     *memory_ = {};
     memory_->reserve(before.size());
     for (std::size_t b = 0; b < before.size(); ++b) memory_->add(before[b], position_of(b));
-    memory_->set_sample_faces(corners, sample_faces_);
+    memory_->set_sample_faces(corners, face_samples_.faces());
   }
 
   std::vector<BoundaryGap> gaps(double limit) const {
     std::vector<BoundaryGap> gaps;
     const double squared = limit * limit;
     for (std::size_t s = 0; s < samples_.size(); ++s) {
-      if (sample_distances_[s] <= squared) continue;
-      const Triangle& face = stars_.faces[at(sample_faces_[s])].nodes;
+      if (face_samples_.squared_distance(s) <= squared) continue;
+      const Triangle& face = stars_.faces[at(face_samples_.faces()[s])].nodes;
       const Vec3 x = samples_[s];
       gaps.push_back({x, nearest_on_triangle(x, position(face[0]), position(face[1]), position(face[2])), face});
     }
@@ -94,7 +98,18 @@ class BoundaryFit::Fit {
       add_probe(stars_.nodes.size() + e, {stars_.edges[e][0], stars_.edges[e][1], stars_.edges[e][1]});
     for (std::size_t b = 0; b < stars_.nodes.size(); ++b)
       add_probe(b, {stars_.nodes[b], stars_.nodes[b], stars_.nodes[b]});
-    add_corner_gaps(limit, gaps);
+    return gaps;
+  }
+
+  std::vector<BoundaryGap> corner_gaps(double limit) const {
+    const auto n = static_cast<std::int64_t>(stars_.faces.size());
+    std::vector<std::vector<BoundaryGap>> chunks(static_cast<std::size_t>((n + kFitGrain - 1) / kFitGrain));
+    threads_.for_chunks(n, kFitGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f)
+        add_corner_gaps(f, limit * limit, chunks[static_cast<std::size_t>(begin / kFitGrain)]);
+    });
+    std::vector<BoundaryGap> gaps;
+    for (const std::vector<BoundaryGap>& chunk : chunks) gaps.insert(gaps.end(), chunk.begin(), chunk.end());
     return gaps;
   }
 
@@ -115,36 +130,34 @@ class BoundaryFit::Fit {
     return std::sqrt(squared);
   }
 
-  /// Gaps at three more points of each face, between its middle and its corners: no fit draws there.
-  void add_corner_gaps(double limit, std::vector<BoundaryGap>& gaps) const {
-    for (std::size_t f = 0; f < stars_.faces.size(); ++f) {
-      const std::size_t p = stars_.nodes.size() + stars_.edges.size() + f;
-      for (const Index corner : stars_.faces[f].nodes) {
-        const Vec3 x = 0.5 * (probe_point(p) + position(corner));
-        const TriangleTree::Nearest found = tree_.nearest_from(x, probes_[p].place, limit * limit);
-        if (found.triangle >= 0 && found.squared_distance > limit * limit)
-          gaps.push_back({found.point, x, stars_.faces[f].nodes, true});
-      }
+  void add_corner_gaps(std::size_t f, double squared, std::vector<BoundaryGap>& gaps) const {
+    const std::size_t middle = stars_.nodes.size() + stars_.edges.size() + f;
+    for (const Index corner : stars_.faces[f].nodes) {
+      const Vec3 x = 0.5 * (probe_point(middle) + position(corner));
+      const TriangleTree::Nearest found = tree_.nearest_from(x, probes_[middle].place, squared);
+      if (found.triangle >= 0 && found.squared_distance > squared)
+        gaps.push_back({found.point, x, stars_.faces[f].nodes, true});
     }
   }
 
   /// Moves every node to the nearest point of the surface, as far as its star allows.
   void draw_to_surface() {
     std::vector<Vec3> targets(stars_.nodes.size());
-    threads_.for_chunks(static_cast<std::int64_t>(targets.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      Index guess = -1;
-      for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
-        targets[b] = position(stars_.nodes[b]);
-        const TriangleTree::Nearest found = tree_.nearest_from(targets[b], guess);
-        probes_[b] = {found.place, found.squared_distance};
-        guess = found.place;
-        const Vec3* known = memory_ == nullptr ? nullptr : memory_->find(targets[b]);
-        if (known != nullptr)
-          targets[b] = *known;
-        else if (found.squared_distance < std::pow(kReach * longest_edge(b), 2))
-          targets[b] = found.point;
-      }
-    });
+    threads_.for_chunks(static_cast<std::int64_t>(targets.size()), kFitGrain,
+                        [&](std::int64_t begin, std::int64_t end) {
+                          Index guess = -1;
+                          for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+                            targets[b] = position(stars_.nodes[b]);
+                            const TriangleTree::Nearest found = tree_.nearest_from(targets[b], guess);
+                            probes_[b] = {found.place, found.squared_distance};
+                            guess = found.place;
+                            const Vec3* known = memory_ == nullptr ? nullptr : memory_->find(targets[b]);
+                            if (known != nullptr)
+                              targets[b] = *known;
+                            else if (found.squared_distance < std::pow(kReach * longest_edge(b), 2))
+                              targets[b] = found.point;
+                          }
+                        });
     // Twice: at first neighbours may not be where they leave room.
     for (int pass = 0; pass < 2; ++pass)
       for (std::size_t b = 0; b < targets.size(); ++b) {
@@ -159,70 +172,9 @@ class BoundaryFit::Fit {
     }
   }
 
-  /// Finds the face nearest to each sample, again where something moved.
-  void pair_samples() {
-    std::vector<Triangle> triangles(stars_.faces.size());
-    std::transform(stars_.faces.begin(), stars_.faces.end(), triangles.begin(),
-                   [](const BoundaryFace& face) { return face.nodes; });
-    const TriangleTree boundary(mesh_.nodes, triangles);
-    std::vector<Index> places(triangles.size());
-    for (std::size_t p = 0; p < places.size(); ++p) places[at(boundary.order()[p])] = static_cast<Index>(p);
-    sample_distances_.resize(samples_.size());
-    threads_.for_chunks(static_cast<std::int64_t>(samples_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      Index guess = -1;
-      for (auto s = static_cast<std::size_t>(begin); s < static_cast<std::size_t>(end); ++s) {
-        if (const Index face = sample_faces_[s]; face >= 0) {
-          if (!has_moved(face) && sample_distances_[s] < near_) continue;
-          sample_distances_[s] = squared_distance(samples_[s], face);
-          if (sample_distances_[s] < near_) continue;
-          guess = places[at(face)];
-        }
-        const TriangleTree::Nearest found = boundary.nearest_from(samples_[s], guess, near_);
-        guess = found.place;
-        sample_faces_[s] = found.triangle;
-        sample_distances_[s] = found.squared_distance;
-      }
-    });
-    list_samples();
-  }
-
   bool has_moved(Index face) const {
     return std::any_of(stars_.faces[at(face)].nodes.begin(), stars_.faces[at(face)].nodes.end(),
                        [&](Index node) { return moved_[at(stars_.numbers[at(node)])]; });
-  }
-
-  /// Samples of each face; without those that are out of reach, and some of many.
-  void list_samples() {
-    std::vector<double> reach(stars_.faces.size());
-    for (std::size_t f = 0; f < reach.size(); ++f) {
-      const auto& [a, b, c] = stars_.faces[f].nodes;
-      reach[f] = kReach * kReach *
-                 std::max({(position(a) - position(b)).squaredNorm(), (position(b) - position(c)).squaredNorm(),
-                           (position(c) - position(a)).squaredNorm()});
-    }
-    std::vector<Index> counts(stars_.faces.size(), 0), farthest(stars_.faces.size(), -1);
-    for (std::size_t s = 0; s < samples_.size(); ++s) {
-      const std::size_t f = at(sample_faces_[s]);
-      if (sample_distances_[s] > reach[f]) continue;
-      ++counts[f];
-      if (farthest[f] < 0 || sample_distances_[s] > sample_distances_[at(farthest[f])])
-        farthest[f] = static_cast<Index>(s);
-    }
-    face_samples_ = {};  // before there is a new one
-    face_samples_ = CompressedList(stars_.faces.size(), [&](const auto& with) {
-      std::vector<Index> seen(stars_.faces.size(), 0);
-      for (std::size_t s = 0; s < samples_.size(); ++s) {
-        const std::size_t f = at(sample_faces_[s]);
-        if (sample_distances_[s] > reach[f]) continue;
-        const bool is_turn = seen[f]++ % (counts[f] / kFaceSamples + 1) == 0;
-        if (is_turn || farthest[f] == static_cast<Index>(s)) with(f, static_cast<Index>(s));
-      }
-    });
-  }
-
-  double squared_distance(const Vec3& p, Index face) const {
-    const auto& [a, b, c] = stars_.faces[at(face)].nodes;
-    return (nearest_on_triangle(p, position(a), position(b), position(c)) - p).squaredNorm();
   }
 
   /// Probes are the boundary nodes, the middles of edges, and the middles of faces.
@@ -241,10 +193,11 @@ class BoundaryFit::Fit {
   }
 
   void find_probes() {
-    threads_.for_chunks(static_cast<std::int64_t>(probes_.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p)
-        if (probe_moved(p)) probes_[p] = probe(p);
-    });
+    threads_.for_chunks(static_cast<std::int64_t>(probes_.size()), kFitGrain,
+                        [&](std::int64_t begin, std::int64_t end) {
+                          for (auto p = static_cast<std::size_t>(begin); p < static_cast<std::size_t>(end); ++p)
+                            if (probe_moved(p)) probes_[p] = probe(p);
+                        });
   }
 
   /// Beginning with the triangle that was the nearest before; that is good enough if it is near.
@@ -272,7 +225,7 @@ class BoundaryFit::Fit {
     double most = 0;
     visit_probes(b, [&](std::size_t p, double) { most = std::max(most, probes_[p].squared); });
     for (const Index f : stars_.faces_of.of(b))
-      for (const Index s : face_samples_.of(at(f))) most = std::max(most, sample_distances_[at(s)]);
+      for (const Index s : face_samples_.of(f)) most = std::max(most, face_samples_.squared_distance(at(s)));
     return most > wanted_;
   }
 
@@ -280,7 +233,7 @@ class BoundaryFit::Fit {
   void take_star_samples(std::size_t b) {
     star_samples_.clear();
     for (const Index f : stars_.faces_of.of(b))
-      for (const Index s : face_samples_.of(at(f))) star_samples_.push_back(samples_[at(s)]);
+      for (const Index s : face_samples_.of(f)) star_samples_.push_back(samples_[at(s)]);
   }
 
   /// Sum of the sixth powers of the distances of all samples and probes of a node: mostly that of the largest. Stops
@@ -289,10 +242,10 @@ class BoundaryFit::Fit {
     double sum = 0;
     const Vec3* x = star_samples_.data();
     for (const Index f : stars_.faces_of.of(b))
-      for (std::size_t s = 0; s < face_samples_.of(at(f)).size(); ++s, ++x) {
-        double least = squared_distance(*x, f);
+      for (std::size_t s = 0; s < face_samples_.of(f).size(); ++s, ++x) {
+        double least = face_samples_.squared_distance(*x, f);
         if (least > near_)
-          for (const Index g : stars_.faces_of.of(b)) least = std::min(least, squared_distance(*x, g));
+          for (const Index g : stars_.faces_of.of(b)) least = std::min(least, face_samples_.squared_distance(*x, g));
         sum += least * least * least;
         if (sum > limit) return sum;
       }
@@ -323,7 +276,7 @@ class BoundaryFit::Fit {
     const Vec3* x = star_samples_.data();
     for (const Index f : stars_.faces_of.of(b)) {
       const auto& [i, j, k] = stars_.faces[at(f)].nodes;
-      for (std::size_t s = 0; s < face_samples_.of(at(f)).size(); ++s, ++x) {
+      for (std::size_t s = 0; s < face_samples_.of(f).size(); ++s, ++x) {
         const Vec3 foot = nearest_on_triangle(*x, position(i), position(j), position(k));
         const std::array<Index, 2> rest = own == i ? std::array{j, k} : own == j ? std::array{k, i} : std::array{i, j};
         const double share = first_weight(foot, position(own), position(rest[0]), position(rest[1]));
@@ -367,10 +320,8 @@ class BoundaryFit::Fit {
   const Threads& threads_;
   FitMemory* memory_;  ///< may be null
   BoundaryStars stars_;
-  double near_, wanted_;                  ///< squared, m^2
-  std::vector<Index> sample_faces_;       ///< per sample: the nearest face
-  std::vector<double> sample_distances_;  ///< to it, squared
-  CompressedList face_samples_;
+  double near_, wanted_;  ///< squared, m^2
+  FaceSamples face_samples_;
   std::vector<Vec3> star_samples_;  ///< of the node that is being moved, see take_star_samples
   std::vector<Probe> probes_;
   std::vector<bool> moved_;  ///< per boundary node: since the last search
@@ -386,6 +337,10 @@ BoundaryFit::~BoundaryFit() = default;
 
 std::vector<BoundaryGap> BoundaryFit::gaps(double limit) const {
   return fit_->gaps(limit);
+}
+
+std::vector<BoundaryGap> BoundaryFit::corner_gaps(double limit) const {
+  return fit_->corner_gaps(limit);
 }
 
 void fit_boundary(StuffedMesh& stuffed, const SurfaceMesh& surface, const BoundaryFitParams& params,

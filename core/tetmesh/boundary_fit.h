@@ -44,9 +44,10 @@ class BoundaryFit {
   BoundaryFit(const BoundaryFit&) = delete;
   BoundaryFit& operator=(const BoundaryFit&) = delete;
 
-  /// Samples, nodes, middles of edges and faces, and what lies between these and the corners of faces, that are further
-  /// than `limit` (m) from the other side.
+  /// Samples, nodes, and middles of edges and faces that are further than `limit` (m) from the other side.
   std::vector<BoundaryGap> gaps(double limit) const;
+  /// The same of three more points of each face, between its middle and its corners: no fit draws there.
+  std::vector<BoundaryGap> corner_gaps(double limit) const;
 
  private:
   class Fit;

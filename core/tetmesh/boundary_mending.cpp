@@ -74,9 +74,9 @@ int shared_nodes(const Tet& a, const Tet& b) {
 }
 
 /// The boundary as it stands, and where it is no manifold.
-class BoundaryDefects {
+class BoundaryFans {
  public:
-  explicit BoundaryDefects(const StuffedMesh& stuffed)
+  explicit BoundaryFans(const StuffedMesh& stuffed)
       : faces(find_surface_faces(stuffed)),
         faces_of(items_of_nodes(stuffed.mesh.nodes.size(), faces.size(), [this](std::size_t i, const auto& visit) {
           for (const Index node : faces[i].nodes) visit(node);
@@ -147,7 +147,7 @@ class BoundaryDefects {
 /// Mends the defects of one round.
 class MendingRound {
  public:
-  MendingRound(StuffedMesh& stuffed, const BoundaryDefects& defects)
+  MendingRound(StuffedMesh& stuffed, const BoundaryFans& defects)
       : stuffed_(stuffed), defects_(defects), removed_(stuffed.mesh.tets.size(), false) {
     std::vector<bool> wanted(stuffed.mesh.nodes.size(), false);
     for (const Index node : defects.nodes) wanted[at(node)] = true;
@@ -269,7 +269,7 @@ class MendingRound {
   }
 
   StuffedMesh& stuffed_;
-  const BoundaryDefects& defects_;
+  const BoundaryFans& defects_;
   std::vector<bool> removed_;
   NodeItems star_;  // elements of the defective nodes
   BoundaryMending done_;
@@ -319,7 +319,7 @@ std::vector<BoundaryFace> find_surface_faces(const StuffedMesh& stuffed) {
 BoundaryMending mend_boundary(StuffedMesh& stuffed) {
   BoundaryMending total;
   while (true) {  // ends: copying only parts stars, removing only takes from a finite number of elements
-    const BoundaryDefects defects(stuffed);
+    const BoundaryFans defects(stuffed);
     if (defects.nodes.empty()) return total;
     const BoundaryMending done = MendingRound(stuffed, defects).mend();
     total.copied_nodes += done.copied_nodes;

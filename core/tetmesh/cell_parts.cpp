@@ -12,7 +12,7 @@ namespace softreel {
 namespace {
 
 /// A point counts as inside if the surface goes round it more than this often (signed_distance.h).
-constexpr double kInside = 0.5;
+constexpr double kInsideWinding = 0.5;
 
 /// Shortest way that counts, lattice units: far above round-off, far below anything a surface means.
 constexpr double kShort = 1e-7;
@@ -193,7 +193,7 @@ class CellSurface {
     double winding = from.winding;
     for (const auto& [t, turn] : crossings) {
       winding += turn;
-      if (std::abs(winding) < kInside) return false;
+      if (std::abs(winding) < kInsideWinding) return false;
     }
     return true;
   }
@@ -207,7 +207,7 @@ class CellSurface {
     for (std::size_t g = 0; g < kFillSamples; ++g) {
       const Vec3 p = point_at(sample_grid()[g].weights);
       const double winding = inside_->winding(p);
-      if (std::abs(winding) < kInside) continue;
+      if (std::abs(winding) < kInsideWinding) continue;
       points.push_back({p, winding, nearest_cut(p)});
       grid.push_back(g);
     }
@@ -238,7 +238,7 @@ class CellSurface {
     for (const Vec3& x : polygons()[cut]) start += x / static_cast<double>(polygons()[cut].size());
     if (normal(cut).dot(direction) > 0 && touches_another(cut, start)) return;  // what lies before it is the other's
     const double winding = inside_->winding(start + kShort * direction);
-    if (std::abs(winding) < kInside) return;
+    if (std::abs(winding) < kInsideWinding) return;
     double end = std::max(way_out(start, direction), 4 * kShort);
     std::size_t hit = cut;
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
@@ -287,7 +287,8 @@ class CellSurface {
     if (parts.count == 1 && is_on_surface(corners_[3])) {  // whether corner 3 is inside hangs on round-off
       double& fill = parts.fills[0];
       fill -= std::floor(fill);
-      if (std::min(fill, 1 - fill) < kRoundOff) fill = std::abs(inside_->winding(point_at(kMiddle))) < kInside ? 0 : 1;
+      if (std::min(fill, 1 - fill) < kRoundOff)
+        fill = std::abs(inside_->winding(point_at(kMiddle))) < kInsideWinding ? 0 : 1;
     }
     for (double& fill : parts.fills) {
       if (fill < -kRoundOff || fill > 1 + kRoundOff) return false;
@@ -308,7 +309,7 @@ class CellSurface {
     parts.fills.assign(at(parts.count), 0.0);
     for (const GridPoint& point : sample_grid()) {
       const Vec3 p = point_at(point.weights);
-      if (std::abs(inside_->winding(p)) < kInside) continue;
+      if (std::abs(inside_->winding(p)) < kInsideWinding) continue;
       const Index part = parts.count == 1 ? 0 : cut_parts[nearest_cut(p)];
       parts.fills[at(part)] += 1.0 / static_cast<double>(kFillSamples);
     }

@@ -8,9 +8,9 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 256;
+constexpr std::int64_t kCutGrain = 256;
 
-using Corners = std::array<Vec3, 3>;
+using TriangleCorners = std::array<Vec3, 3>;
 
 /// Which side of a triangle runs between two welded vertices.
 std::size_t side_of(const Triangle& welded, const HalfEdge& half) {
@@ -42,13 +42,13 @@ void join_edge(LatticeSurface& surface, const std::vector<Triangle>& welded, std
 
 /// Collects the cells whose boxes overlap that of a triangle; a large one is quartered first, so that it does not fill
 /// the whole of its box.
-void find_candidates(const Corners& x, std::vector<std::uint64_t>& cells) {
+void find_candidates(const TriangleCorners& x, std::vector<std::uint64_t>& cells) {
   constexpr double kSmall = 6, kMargin = 1e-6;
   const Vec3 low = x[0].cwiseMin(x[1]).cwiseMin(x[2]).array() - kMargin;
   const Vec3 high = x[0].cwiseMax(x[1]).cwiseMax(x[2]).array() + kMargin;
   if ((high - low).maxCoeff() > kSmall) {
     const Vec3 ab = 0.5 * (x[0] + x[1]), bc = 0.5 * (x[1] + x[2]), ca = 0.5 * (x[2] + x[0]);
-    for (const Corners& quarter : {Corners{x[0], ab, ca}, {ab, x[1], bc}, {ca, bc, x[2]}, {bc, ca, ab}})
+    for (const TriangleCorners& quarter : {TriangleCorners{x[0], ab, ca}, {ab, x[1], bc}, {ca, bc, x[2]}, {bc, ca, ab}})
       find_candidates(quarter, cells);
     return;
   }
@@ -75,7 +75,7 @@ void find_candidates(const Corners& x, std::vector<std::uint64_t>& cells) {
 
 void cut_triangle(const LatticeSurface& surface, Index triangle, std::vector<std::uint64_t>& candidates,
                   std::vector<CellCut>& cuts) {
-  Corners x;
+  TriangleCorners x;
   for (std::size_t k = 0; k < 3; ++k) x[k] = surface.points[at(surface.triangles[at(triangle)][k])];
   candidates.clear();
   find_candidates(x, candidates);
@@ -135,12 +135,13 @@ std::array<Vec4, 3> triangle_weights(const LatticeSurface& surface, Index triang
 
 std::vector<CellCut> cut_cells(const LatticeSurface& surface, const Threads& threads) {
   const auto n = static_cast<std::int64_t>(surface.triangles.size());
-  std::vector<std::vector<CellCut>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
-  threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  std::vector<std::vector<CellCut>> chunks(static_cast<std::size_t>((n + kCutGrain - 1) / kCutGrain));
+  threads.for_chunks(n, kCutGrain, [&](std::int64_t begin, std::int64_t end) {
     std::vector<std::uint64_t> candidates;
     for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
-      if (surface.used[at(t)]) cut_triangle(surface, t, candidates, chunks[static_cast<std::size_t>(begin / kGrain)]);
-    chunks[static_cast<std::size_t>(begin / kGrain)].shrink_to_fit();
+      if (surface.used[at(t)])
+        cut_triangle(surface, t, candidates, chunks[static_cast<std::size_t>(begin / kCutGrain)]);
+    chunks[static_cast<std::size_t>(begin / kCutGrain)].shrink_to_fit();
   });
   std::size_t count = 0;
   for (const auto& chunk : chunks) count += chunk.size();

@@ -12,7 +12,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 64;
+constexpr std::int64_t kCellGrain = 64;
 
 /// How many cells in a row parts may be made one in; three cells make about an edge.
 constexpr int kMergeRounds = 4;
@@ -111,9 +111,9 @@ class Cover {
   void find_parts(const Threads& threads) {
     cut_copies_.resize(cuts_.size());
     const auto n = static_cast<std::int64_t>(cells_.size());
-    std::vector<std::vector<double>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
-    threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
-      std::vector<double>& fills = chunks[static_cast<std::size_t>(begin / kGrain)];
+    std::vector<std::vector<double>> chunks(static_cast<std::size_t>((n + kCellGrain - 1) / kCellGrain));
+    threads.for_chunks(n, kCellGrain, [&](std::int64_t begin, std::int64_t end) {
+      std::vector<double>& fills = chunks[static_cast<std::size_t>(begin / kCellGrain)];
       for (auto c = static_cast<std::size_t>(begin); c < static_cast<std::size_t>(end); ++c) {
         CoverCell& cell = cells_[c];
         const CellParts parts =

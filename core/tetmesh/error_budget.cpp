@@ -267,6 +267,8 @@ class Filling {
     if (stuffed.mesh.tets.empty()) return everywhere();
     const BoundaryFit fitted(stuffed, filled_.tree(), samples, fit_params, threads_, &memory_);
     std::vector<BoundaryGap> gaps = fitted.gaps(limit);
+    const std::vector<BoundaryGap> between = fitted.corner_gaps(limit);
+    gaps.insert(gaps.end(), between.begin(), between.end());
     filled_.leave_out_caps(gaps);
     return gaps;
   }

@@ -6,7 +6,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 256;
+constexpr std::int64_t kSearchGrain = 256;
 
 /// Triangles that are smaller than this share of the mean edge (of either side, the smaller) are not quartered.
 constexpr double kSmallest = 0.25;
@@ -108,7 +108,7 @@ std::vector<Probe> probe_points(const std::vector<Vec3>& points, const std::vect
   for (const Triangle& triangle : triangles)
     for (const Index v : triangle) used[static_cast<std::size_t>(v)] = true;
   std::vector<Probe> probes(points.size());
-  threads.for_chunks(static_cast<std::int64_t>(points.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(static_cast<std::int64_t>(points.size()), kSearchGrain, [&](std::int64_t begin, std::int64_t end) {
     Index guess = -1;
     for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
       if (!used[v]) continue;
@@ -129,14 +129,14 @@ double farthest_distance(const std::vector<Vec3>& points, const std::vector<Tria
   for (const Probe& probe : probes) lower = std::max(lower, probe.distance);
   const double smallest = kSmallest * mean_edge(points, triangles, tree);
   const auto n = static_cast<std::int64_t>(triangles.size());
-  std::vector<double> farthest(static_cast<std::size_t>((n + kGrain - 1) / kGrain), lower);
-  threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  std::vector<double> farthest(static_cast<std::size_t>((n + kSearchGrain - 1) / kSearchGrain), lower);
+  threads.for_chunks(n, kSearchGrain, [&](std::int64_t begin, std::int64_t end) {
     Search search(tree, lower, smallest);
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
       search.visit(corner(0), corner(1), corner(2));
     }
-    farthest[static_cast<std::size_t>(begin / kGrain)] = search.best();
+    farthest[static_cast<std::size_t>(begin / kSearchGrain)] = search.best();
   });
   return *std::max_element(farthest.begin(), farthest.end());
 }
@@ -157,15 +157,16 @@ void visit_far(const std::vector<Vec3>& points, const std::vector<Triangle>& tri
                double limit, const Threads& threads, const With& with) {
   const std::vector<Probe> probes = probe_points(points, triangles, tree, threads);
   const Search search(tree, limit, kSmallest * mean_edge(points, triangles, tree));
-  threads.for_chunks(static_cast<std::int64_t>(triangles.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Vec3> far;
-    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-      const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
-      far.clear();
-      search.collect(corner(0), corner(1), corner(2), far);
-      with(t, far);
-    }
-  });
+  threads.for_chunks(
+      static_cast<std::int64_t>(triangles.size()), kSearchGrain, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<Vec3> far;
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+          const auto corner = [&](std::size_t k) { return probes[static_cast<std::size_t>(triangles[t][k])]; };
+          far.clear();
+          search.collect(corner(0), corner(1), corner(2), far);
+          with(t, far);
+        }
+      });
 }
 
 }  // namespace
@@ -174,9 +175,9 @@ std::vector<Vec3> find_far_points(const std::vector<Vec3>& points, const std::ve
                                   const TriangleTree& tree, double limit, const Threads& threads) {
   if (tree.empty() || triangles.empty()) return {};
   const auto n = static_cast<std::int64_t>(triangles.size());
-  std::vector<std::vector<Vec3>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
+  std::vector<std::vector<Vec3>> chunks(static_cast<std::size_t>((n + kSearchGrain - 1) / kSearchGrain));
   visit_far(points, triangles, tree, limit, threads, [&](std::size_t t, const std::vector<Vec3>& of_triangle) {
-    std::vector<Vec3>& chunk = chunks[t / static_cast<std::size_t>(kGrain)];
+    std::vector<Vec3>& chunk = chunks[t / static_cast<std::size_t>(kSearchGrain)];
     chunk.insert(chunk.end(), of_triangle.begin(), of_triangle.end());
   });
   std::vector<Vec3> far;

@@ -12,7 +12,7 @@ namespace {
 constexpr double kOffset = 1e-5;
 
 /// From this winding number on a point is inside; closed surfaces have integers, the rims of open ones about a half.
-constexpr double kInside = 0.75;
+constexpr double kHiddenWinding = 0.75;
 
 /// Whether the solid is on both sides of a triangle's plane at one of its points.
 class HiddenPoint {
@@ -23,7 +23,7 @@ class HiddenPoint {
     const Vec3 area = (x[1] - x[0]).cross(x[2] - x[0]);
     if (!(area.norm() > 0)) return false;
     const Vec3 out = offset_ * area.normalized();
-    return std::abs(winding_(p + out)) > kInside && std::abs(winding_(p - out)) > kInside;
+    return std::abs(winding_(p + out)) > kHiddenWinding && std::abs(winding_(p - out)) > kHiddenWinding;
   }
 
  private:

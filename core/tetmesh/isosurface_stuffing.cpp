@@ -9,7 +9,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 4096;
+constexpr std::int64_t kStuffingGrain = 4096;
 
 /// The lattice nodes while they are warped.
 struct WarpedLattice {
@@ -36,14 +36,15 @@ WarpedLattice make_lattice(const LatticeDistance& distance, const Threads& threa
   lattice.neighbors.resize(nodes.size());
   lattice.signs.resize(nodes.size());
   lattice.positions.resize(nodes.size());
-  threads.for_chunks(static_cast<std::int64_t>(nodes.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      for (std::size_t k = 0; k < kNeighbors; ++k)
-        lattice.neighbors[i][k] = distance.nodes.find(lattice_neighbor(nodes[i], k));
-      lattice.signs[i] = sign_of(distance.values[i]);
-      lattice.positions[i] = lattice_position(distance.frame, nodes[i]);
-    }
-  });
+  threads.for_chunks(static_cast<std::int64_t>(nodes.size()), kStuffingGrain,
+                     [&](std::int64_t begin, std::int64_t end) {
+                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                         for (std::size_t k = 0; k < kNeighbors; ++k)
+                           lattice.neighbors[i][k] = distance.nodes.find(lattice_neighbor(nodes[i], k));
+                         lattice.signs[i] = sign_of(distance.values[i]);
+                         lattice.positions[i] = lattice_position(distance.frame, nodes[i]);
+                       }
+                     });
   return lattice;
 }
 
@@ -79,7 +80,7 @@ void warp_node(WarpedLattice& lattice, std::size_t i) {
 /// the colours before, whatever the number of threads.
 void warp_nodes(WarpedLattice& lattice, const Threads& threads) {
   for (int color = 0; color < 4; ++color)
-    threads.for_chunks(static_cast<std::int64_t>(lattice.nodes().size()), kGrain,
+    threads.for_chunks(static_cast<std::int64_t>(lattice.nodes().size()), kStuffingGrain,
                        [&](std::int64_t begin, std::int64_t end) {
                          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
                            if (lattice_color(lattice.nodes()[i]) == color) warp_node(lattice, i);
@@ -179,9 +180,9 @@ void emit_edge(const WarpedLattice& lattice, const NodeNumbers& numbers, std::si
 std::vector<Tet> fill_tets(const WarpedLattice& lattice, const NodeNumbers& numbers, const Threads& threads) {
   const std::vector<LatticeNode>& nodes = lattice.nodes();
   const auto n = static_cast<std::int64_t>(nodes.size());
-  std::vector<std::vector<Tet>> chunks(static_cast<std::size_t>((n + kGrain - 1) / kGrain));
-  threads.for_chunks(n, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Tet>& tets = chunks[static_cast<std::size_t>(begin / kGrain)];
+  std::vector<std::vector<Tet>> chunks(static_cast<std::size_t>((n + kStuffingGrain - 1) / kStuffingGrain));
+  threads.for_chunks(n, kStuffingGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Tet>& tets = chunks[static_cast<std::size_t>(begin / kStuffingGrain)];
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
       for (std::size_t c = 0; c < 3 && (nodes[i][0] & 1) == 0; ++c) emit_edge(lattice, numbers, i, c, tets);
   });

@@ -14,7 +14,7 @@ namespace {
 /// either side.
 constexpr std::int32_t kBlockSize = 8;
 
-using Corners = std::array<Vec3, 3>;
+using TriangleCorners = std::array<Vec3, 3>;
 
 std::int32_t block_of(double voxel) {
   return static_cast<std::int32_t>(std::floor(voxel / kBlockSize));
@@ -23,7 +23,7 @@ std::int32_t block_of(double voxel) {
 /// The box of a triangle and its band.
 struct Reach {
   Vec3 min, max;
-  explicit Reach(const Corners& x)
+  explicit Reach(const TriangleCorners& x)
       : min(x[0].cwiseMin(x[1]).cwiseMin(x[2]).array() - kBandVoxels),
         max(x[0].cwiseMax(x[1]).cwiseMax(x[2]).array() + kBandVoxels) {}
 };
@@ -39,7 +39,7 @@ class Blocks {
   Blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, const LatticeFrame& frame)
       : positions_(positions), triangles_(triangles), frame_(frame) {
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const Corners x = corners(static_cast<Index>(t));
+      const TriangleCorners x = corners(static_cast<Index>(t));
       if (!x[0].allFinite() || !x[1].allFinite() || !x[2].allFinite()) continue;
       add(x, static_cast<Index>(t));
     }
@@ -47,9 +47,10 @@ class Blocks {
 
   const std::vector<Block>& list() const { return blocks_; }
 
-  /// Corners in voxels; the origin is subtracted in double, so that nothing is lost far from the world's origin.
-  Corners corners(Index triangle) const {
-    Corners x;
+  /// TriangleCorners in voxels; the origin is subtracted in double, so that nothing is lost far from the world's
+  /// origin.
+  TriangleCorners corners(Index triangle) const {
+    TriangleCorners x;
     for (std::size_t k = 0; k < 3; ++k)
       x[k] = (positions_[static_cast<std::size_t>(triangles_[static_cast<std::size_t>(triangle)][k])] - frame_.origin) *
              (2.0 / frame_.spacing);
@@ -58,11 +59,12 @@ class Blocks {
 
  private:
   /// A large triangle is quartered first, so that it does not fill the whole of its box.
-  void add(const Corners& x, Index triangle) {
+  void add(const TriangleCorners& x, Index triangle) {
     const Reach reach(x);
     if ((reach.max - reach.min).maxCoeff() > 2 * kBlockSize) {
       const Vec3 ab = 0.5 * (x[0] + x[1]), bc = 0.5 * (x[1] + x[2]), ca = 0.5 * (x[2] + x[0]);
-      for (const Corners& quarter : {Corners{x[0], ab, ca}, {ab, x[1], bc}, {ca, bc, x[2]}, {bc, ca, ab}})
+      for (const TriangleCorners& quarter :
+           {TriangleCorners{x[0], ab, ca}, {ab, x[1], bc}, {ca, bc, x[2]}, {bc, ca, ab}})
         add(quarter, triangle);
       return;
     }
@@ -95,7 +97,7 @@ class BlockBand {
   }
 
   /// Triangles come in ascending order: of equal distances the first stays.
-  void add(const Corners& x, Index triangle) {
+  void add(const TriangleCorners& x, Index triangle) {
     const Reach reach(x);
     const Vec3 area = (x[1] - x[0]).cross(x[2] - x[0]);
     const double most = kBandVoxels * kBandVoxels * area.squaredNorm() * (1 + 1e-9);
@@ -134,7 +136,7 @@ class BlockBand {
     return ((i & 1) * kNodes / 2) + ((i >> 1) * 4 + (j >> 1)) * 4 + (k >> 1);
   }
 
-  void meet(const LatticeNode& node, const Vec3& p, const Corners& x, Index triangle) {
+  void meet(const LatticeNode& node, const Vec3& p, const TriangleCorners& x, Index triangle) {
     const double squared = (nearest_on_triangle(p, x[0], x[1], x[2]) - p).squaredNorm();
     const std::size_t s = slot(node);
     if (!(squared < squared_[s])) return;

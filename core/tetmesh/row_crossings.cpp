@@ -26,10 +26,10 @@ EdgePoint edge_point(std::array<double, 3> a, std::array<double, 3> b, double y)
   return {a[0] + t * (b[0] - a[0]), a[2] + t * (b[2] - a[2])};
 }
 
-using Corners = std::array<std::array<double, 3>, 3>;
+using RowCorners = std::array<std::array<double, 3>, 3>;
 
-Corners in_lattice_units(const std::array<Vec3, 3>& triangle, const LatticeFrame& frame) {
-  Corners corners;
+RowCorners in_lattice_units(const std::array<Vec3, 3>& triangle, const LatticeFrame& frame) {
+  RowCorners corners;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 p = (triangle[k] - frame.origin) * (2.0 / frame.spacing);
     corners[k] = {p[0], p[1], p[2]};
@@ -42,7 +42,7 @@ Corners in_lattice_units(const std::array<Vec3, 3>& triangle, const LatticeFrame
 struct PlaneCut {
   EdgePoint up{}, down{};
 
-  PlaneCut(const Corners& corners, std::int32_t y) {
+  PlaneCut(const RowCorners& corners, std::int32_t y) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto &a = corners[k], &b = corners[(k + 1) % 3];
       if (a[1] <= y && b[1] > y) up = edge_point(a, b, y);
@@ -118,7 +118,7 @@ int winding_of_node(const TriangleTree& tree, const LatticeFrame& frame, const L
   };
   int winding = 0;
   tree.visit(meets, [&](Index place) {
-    const Corners corners = in_lattice_units(tree.corners(place), frame);
+    const RowCorners corners = in_lattice_units(tree.corners(place), frame);
     const auto [from, to] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
     if (!(from <= node[1] && node[1] < to)) return;
     const PlaneCut cut(corners, node[1]);

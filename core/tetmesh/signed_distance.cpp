@@ -17,7 +17,7 @@ namespace {
 /// In a hole the distance is this many voxels a unit of winding number: steep, so that it rules in the hole only.
 constexpr double kHoleSlope = 8.0 * kBandVoxels;
 
-constexpr std::int64_t kGrain = 256;
+constexpr std::int64_t kDistanceGrain = 256;
 
 /// No triangle is within this share of a node's distance, whatever the round-off.
 constexpr double kFree = 0.999;
@@ -41,14 +41,15 @@ void sign_closed(std::vector<KnownNode>& nodes, LatticeNodeSet& known, const Row
 /// the holes it passes 1/2 smoothly, and the distance shrinks with it, so that the sign still changes at a zero.
 void sign_open(std::vector<KnownNode>& nodes, std::size_t begin, const WindingNumber& winding,
                const LatticeFrame& frame, const Threads& threads) {
-  threads.for_chunks(static_cast<std::int64_t>(nodes.size() - begin), kGrain, [&](std::int64_t from, std::int64_t to) {
-    for (auto i = begin + static_cast<std::size_t>(from); i < begin + static_cast<std::size_t>(to); ++i) {
-      const double beyond = std::abs(winding(lattice_position(frame, nodes[i].node))) - 0.5;
-      const double limit = kHoleSlope * std::abs(beyond);
-      nodes[i].distance = std::min(nodes[i].distance, limit);
-      if (beyond > 0) nodes[i].distance = -nodes[i].distance;
-    }
-  });
+  threads.for_chunks(
+      static_cast<std::int64_t>(nodes.size() - begin), kDistanceGrain, [&](std::int64_t from, std::int64_t to) {
+        for (auto i = begin + static_cast<std::size_t>(from); i < begin + static_cast<std::size_t>(to); ++i) {
+          const double beyond = std::abs(winding(lattice_position(frame, nodes[i].node))) - 0.5;
+          const double limit = kHoleSlope * std::abs(beyond);
+          nodes[i].distance = std::min(nodes[i].distance, limit);
+          if (beyond > 0) nodes[i].distance = -nodes[i].distance;
+        }
+      });
 }
 
 /// Appends what is missing of the neighbours of inside nodes, as outside; in waves, so that the order does not depend
@@ -132,7 +133,7 @@ SurfaceDistance DistanceSampler::sample(const LatticeFrame& frame, LatticeNodeSe
   const std::vector<LatticeNode>& list = result.lattice.nodes.nodes();
   result.lattice.values.resize(list.size());
   result.nearest_triangles.resize(list.size());
-  threads.for_chunks(static_cast<std::int64_t>(list.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(static_cast<std::int64_t>(list.size()), kDistanceGrain, [&](std::int64_t begin, std::int64_t end) {
     SignedPlace last{Vec3::Zero(), 0};
     Index guess = -1;
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {

@@ -12,7 +12,7 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kGrain = 8192;
+constexpr std::int64_t kQualityGrain = 8192;
 
 std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::size_t e) {
   std::array<Vec3, 4> x;
@@ -75,13 +75,14 @@ TetQuality measure_quality(const TetMesh& mesh, const Threads& threads) {
   if (mesh.tets.empty()) return quality;
   std::vector<DihedralRange> angles(mesh.tets.size());
   std::vector<double> volumes(mesh.tets.size());
-  threads.for_chunks(static_cast<std::int64_t>(mesh.tets.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
-      const auto [a, b, c, d] = corners_of(mesh, e);
-      angles[e] = dihedral_range(a, b, c, d);
-      volumes[e] = tet_volume(a, b, c, d);
-    }
-  });
+  threads.for_chunks(static_cast<std::int64_t>(mesh.tets.size()), kQualityGrain,
+                     [&](std::int64_t begin, std::int64_t end) {
+                       for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
+                         const auto [a, b, c, d] = corners_of(mesh, e);
+                         angles[e] = dihedral_range(a, b, c, d);
+                         volumes[e] = tet_volume(a, b, c, d);
+                       }
+                     });
   std::size_t least = 0, most = 0, smallest = 0;
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
     if (!(angles[e].min >= angles[least].min)) least = e;

@@ -13,12 +13,6 @@ namespace softreel {
 /// The point of a triangle that is nearest to `p` (Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5).
 Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Barycentric weight of `a` at a point of a triangle's plane.
-inline double first_weight(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 area = (b - a).cross(c - a);
-  return area.dot((b - p).cross(c - p)) / area.squaredNorm();
-}
-
 /// Bounding-volume tree with eight children a node, whose leaves are single triangles. It is packed: the children of a
 /// node follow one another, all nodes but the last of a level are full, and no link is stored. Built by halving
 /// triangles along the longest side of their centroids' box. The same input gives the same tree. Reading is

@@ -9,6 +9,7 @@
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "core/base/timer.h"
 #include "render/pathtrace/adaptive_sampling.h"
 #include "render/pathtrace/camera_rays.h"
 #include "render/pathtrace/path_integrator.h"
@@ -161,9 +162,7 @@ class Passes {
   template <typename RunTiles>
   void run(const RunTiles& run_tiles) {
     const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
+    const auto seconds = [&] { return seconds_since(start); };
     int samples = std::min(first_pass(), params_.samples);
     double before = 0;
     for (;;) {

@@ -7,6 +7,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "core/base/timer.h"
 #include "tool/report/log_file.h"
 
 namespace softreel {
@@ -28,10 +29,6 @@ std::string bar(double share, int width) {
   const int filled = std::clamp(static_cast<int>(share * width), 0, width);
   return "[" + std::string(static_cast<std::size_t>(filled), '=') +
          std::string(static_cast<std::size_t>(width - filled), ' ') + "]";
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/base/timer.h"
 #include "tool/batch/child_process.h"
 #include "tool/batch/job_messages.h"
 #include "tool/batch/machine.h"
@@ -25,14 +26,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kBetweenLooks = 50;  ///< ms, at children that say nothing
-constexpr std::chrono::milliseconds kPatience{2000};
+constexpr std::chrono::milliseconds kChildPatience{2000};
 constexpr double kUnknownBytes = 1e9;   ///< where no plan could be made
 constexpr double kShareOfMemory = 0.9;  ///< of what is available; the rest is for the system
 constexpr int kMostPlansAtOnce = 8;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::vector<std::string> command_of(const BatchJob& job, const std::vector<std::string>& more) {
   std::vector<std::string> command{program_path()};
@@ -48,7 +45,7 @@ void stop(const std::vector<ChildProcess*>& children) {
   for (const ChildProcess* child : children) child->signal(SIGTERM);
   const auto start = Clock::now();
   const auto has_ended = [](ChildProcess* child) { return child->poll().has_value(); };
-  while (!std::all_of(children.begin(), children.end(), has_ended) && Clock::now() - start < kPatience)
+  while (!std::all_of(children.begin(), children.end(), has_ended) && Clock::now() - start < kChildPatience)
     ChildProcess::wait_for_any(children, kBetweenLooks);
   for (const ChildProcess* child : children) child->signal(SIGKILL);
 }

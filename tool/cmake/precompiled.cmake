@@ -12,12 +12,38 @@ function(softreel_precompile target)
   endif()
 endfunction()
 
-# softreel_compile_in_groups(TARGET SIZE): so many sources at a time, which reads their headers and makes their templates
-# once. Names in anonymous namespaces of one group must differ. For what is compiled whole more often than source by source.
+# softreel_compile_in_groups(TARGET SIZE): at most so many sources of a folder at a time, which reads their headers and
+# makes their templates once; not kernels, which stay as they are measured. Names in anonymous namespaces of one folder
+# must differ. For what is compiled whole more often than source by source; called when the target has all its sources.
 function(softreel_compile_in_groups target size)
-  if(SOFTREEL_PRECOMPILE)  # not where it is asked what sources forget to include
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
+  if(NOT SOFTREEL_PRECOMPILE)  # where it is asked what sources forget to include
+    return()
   endif()
+  get_target_property(sources ${target} SOURCES)
+  set(folders)
+  foreach(source ${sources})
+    get_source_file_property(alone "${source}" TARGET_DIRECTORY ${target} SKIP_UNITY_BUILD_INCLUSION)
+    if(alone OR source MATCHES "_simd\\.cpp$")
+      continue()
+    endif()
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE relative)
+    cmake_path(GET relative PARENT_PATH folder)
+    list(APPEND folders "${folder}")
+    list(APPEND "sources of ${folder}" "${source}")
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder ${folders})
+    list(LENGTH "sources of ${folder}" count)
+    math(EXPR groups "(${count} + ${size} - 1) / ${size}")
+    string(REPLACE "/" "_" name "${folder}")
+    set(place 0)
+    foreach(source IN LISTS "sources of ${folder}")
+      math(EXPR group "${place} * ${groups} / ${count}")
+      set_property(SOURCE "${source}" TARGET_DIRECTORY ${target} PROPERTY UNITY_GROUP "${name}_${group}")
+      math(EXPR place "${place} + 1")
+    endforeach()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
 set(SOFTREEL_COMMON_HEADERS <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional> <span> <string>

@@ -4,16 +4,13 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "core/base/timer.h"
 #include "tool/commands/commands.h"
 #include "tool/export/body_samples.h"
 #include "tool/export/export_series.h"
 
 namespace softreel {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// One series a body, or one for all, of each format.
 std::vector<ExportSeries> make_series(const std::vector<const ExportFormat*>& formats, const ExportSettings& settings,

@@ -15,7 +15,7 @@ namespace softreel {
 namespace {
 
 /// A second, less what ending takes.
-constexpr timespec kPatience{0, 700'000'000};
+constexpr timespec kPatienceAlone{0, 700'000'000};
 /// Children of the same program take a second, and have two.
 constexpr timespec kPatienceWithChildren{4, 0};
 
@@ -38,7 +38,7 @@ void watch() {
   if (sigwait(&signals, &signal) != 0) return;
   cancellation() = true;
   end_processes();
-  const timespec patience = has_children() ? kPatienceWithChildren : kPatience;
+  const timespec patience = has_children() ? kPatienceWithChildren : kPatienceAlone;
   while (sigtimedwait(&signals, nullptr, &patience) < 0 && errno == EINTR) continue;
   // Still here: time is up, or a second signal came.
   std::fputs("\nsoftreel: Interrupted; what is finished is kept. Run the same command again to go on.\n", stderr);

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/timer.h"
 #include "tool/shot/shot_load.h"
 #include "tool/stages/atomic_file.h"
 #include "tool/stages/picture_stage.h"
@@ -113,7 +114,7 @@ RunReport Session::report(const std::string& command, const ShotRun& run) const 
   report.first_frame = frames_.first;
   report.last_frame = frames_.last;
   report.threads = threads_.count();
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  report.seconds = seconds_since(start_);
   report.bodies = report_bodies(run);
   report.simulation = run.counts(frames_.last);
   report.energies = find_energies(run, report_path());

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/timer.h"
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/placement.h"
 #include "core/mesh/readers/mesh_import.h"
@@ -105,10 +106,6 @@ void print_text(const TetrahedralizeOptions& options, const Result& result) {
   if (result.deviation && result.deviation->cap_share > 0)
     std::printf("  %.2g %% of the boundary closes holes and is not measured\n", 100 * result.deviation->cap_share);
   std::printf("  time: %s\n", format_duration(result.seconds).c_str());
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Sizes and placement belong to surfaces.

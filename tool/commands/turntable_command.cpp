@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/base/timer.h"
 #include "tool/commands/commands.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/picture_stage.h"
@@ -52,7 +53,7 @@ class Turntable {
     const auto start = std::chrono::steady_clock::now();
     if (!tracer_) tracer_ = std::make_unique<PathTracer>(session_.context().threads, session_.context().times);
     const Image image = tracer_->render(scene, shot.render.params, [] { return cancellation().load(); });
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = seconds_since(start);
     if (shot.output.exr) outputs_.write(exr_path, exr, encode_exr(image), seconds);
     if (!shot.output.png) return true;
     DisplayImage display = to_display(image, shot.output.view, static_cast<float>(shot.output.exposure));

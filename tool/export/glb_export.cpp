@@ -21,7 +21,7 @@ static_assert(std::endian::native == std::endian::little, "values are written as
 using Json = nlohmann::ordered_json;
 
 // Constants of the glTF 2.0 specification.
-constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr std::uint32_t kGlbMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertexData = 34962, kVertexIndices = 34963;
 
 template <typename T>
@@ -255,7 +255,7 @@ class GlbFile : public ExportWriter {
     const std::uint64_t length = 12 + 8 + header.size() + 8 + binary;
     CHECK(length <= std::numeric_limits<std::uint32_t>::max());
     const auto size = [](std::uint64_t value) { return static_cast<std::uint32_t>(value); };
-    target_.sink(bytes_of(std::vector{kMagic, kVersion, size(length), size(header.size()), kJsonChunk}));
+    target_.sink(bytes_of(std::vector{kGlbMagic, kVersion, size(length), size(header.size()), kJsonChunk}));
     target_.sink({reinterpret_cast<const std::uint8_t*>(header.data()), header.size()});
     target_.sink(bytes_of(std::vector{size(binary), kBinaryChunk}));
     buffer_.bytes().copy_to(target_.sink);

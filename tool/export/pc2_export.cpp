@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they lie in memory");
 
-constexpr std::array<char, 12> kMagic{'P', 'O', 'I', 'N', 'T', 'C', 'A', 'C', 'H', 'E', '2', '\0'};
+constexpr std::array<char, 12> kPointCacheMagic{'P', 'O', 'I', 'N', 'T', 'C', 'A', 'C', 'H', 'E', '2', '\0'};
 
 /// The header has no gaps: seven fields one after the other.
 std::array<std::uint8_t, 32> encode_header(const Pc2Params& params) {
@@ -26,7 +26,7 @@ std::array<std::uint8_t, 32> encode_header(const Pc2Params& params) {
     std::memcpy(header.data() + at, &value, sizeof value);
     at += sizeof value;
   };
-  put(kMagic);
+  put(kPointCacheMagic);
   put(version);
   put(params.points);
   put(start);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/timer.h"
 #include "tool/report/log_file.h"
 
 namespace softreel {
@@ -57,7 +58,7 @@ void Console::begin(const std::string& label, int total) {
 }
 
 std::string Console::time_left(int done) const {
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double elapsed = seconds_since(start_);
   if (done == 0 || done >= total_) return {};
   return format_duration(elapsed / done * (total_ - done)) + " left";
 }

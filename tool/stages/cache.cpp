@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 
 #include "core/base/error.h"
+#include "core/base/timer.h"
 #include "tool/stages/atomic_file.h"
 
 namespace softreel {
@@ -224,7 +225,7 @@ Cache::Produced Cache::produce(const std::string& stage, const StageKey& key, co
   const auto start = std::chrono::steady_clock::now();
   Produced result;
   result.bytes = make();
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = seconds_since(start);
   store(stage, key, result.bytes, result.seconds);
   return result;
 }

@@ -6,6 +6,7 @@
 #include <set>
 #include <thread>
 
+#include "core/base/timer.h"
 #include "tool/stages/stage_names.h"
 #include "tool/stages/work_stream.h"
 
@@ -105,7 +106,7 @@ class Pipeline {
     if (job.source) return true;
     const auto start = std::chrono::steady_clock::now();
     auto image = std::make_shared<const Image>(pictures_.trace(job.scene));
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = seconds_since(start);
     auto held = std::make_shared<const FileLock>(std::move(*claim));
     writer_.submit([this, frame = job.frame, content = job.content, image, held, seconds] {
       pictures_.keep(frame, content, *image, seconds);

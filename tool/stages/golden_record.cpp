@@ -23,7 +23,7 @@ namespace {
 constexpr int kRecordFormat = 1;
 constexpr std::size_t kFieldsNamed = 4;  ///< of changed ones, in a message
 
-std::string name_of(const std::string& path) {
+std::string bare_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
@@ -32,7 +32,7 @@ Shot without_places(Shot shot) {
   for (BodySettings& body : shot.bodies) body.mesh = body.tetrahedra = "";
   // The slash keeps the name from being completed by the working directory.
   const auto keep_name = [](std::string& path) {
-    if (!path.empty()) path = "/" + name_of(path);
+    if (!path.empty()) path = "/" + bare_name(path);
   };
   keep_name(shot.environment_image);
   for (auto& [name, material] : shot.materials)
@@ -171,7 +171,7 @@ SettingsSnapshot golden_settings(const ShotRun& run) {
   for (const auto& [path, checksum] : snapshot(run)) {
     if (path == "shot") continue;
     const bool is_mesh = path.starts_with("mesh ");
-    settings[(is_mesh ? "mesh " : "") + name_of(is_mesh ? path.substr(5) : path)] = checksum;
+    settings[(is_mesh ? "mesh " : "") + bare_name(is_mesh ? path.substr(5) : path)] = checksum;
   }
   return settings;
 }

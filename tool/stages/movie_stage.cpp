@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/base/timer.h"
 #include "tool/stages/atomic_file.h"
 #include "tool/stages/process.h"
 
@@ -72,7 +73,7 @@ std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, 
                     "Run again to try once more, or set output.movie = false.",
                     path, status, said));
   movie.commit();
-  outputs.enter(path, key, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  outputs.enter(path, key, seconds_since(start));
   return path;
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/timer.h"
 #include "render/image/contact_sheet.h"
 
 namespace softreel {
@@ -54,7 +55,7 @@ std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int col
   }
   const SheetStyle style{.columns = columns, .title = title_of(shot, pictures.front().picture)};
   const std::vector<std::uint8_t> bytes = encode_png(contact_sheet(pictures, style));
-  outputs.write(path, key, bytes, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  outputs.write(path, key, bytes, seconds_since(start));
   return path;
 }
 

@@ -10,8 +10,8 @@ namespace {
 constexpr std::int64_t kTetrahedron = 4;
 
 /// Nodes of the elements that are skipped, by Gmsh's number of their type: points, lines and faces up to third order.
-const std::map<std::int64_t, std::size_t> kSkipped{{1, 2},  {2, 3},  {3, 4},  {8, 3},   {9, 6},  {10, 9},
-                                                   {15, 1}, {16, 8}, {20, 9}, {21, 10}, {26, 4}, {36, 16}};
+const std::map<std::int64_t, std::size_t> kSkippedTypes{{1, 2},  {2, 3},  {3, 4},  {8, 3},   {9, 6},  {10, 9},
+                                                        {15, 1}, {16, 8}, {20, 9}, {21, 10}, {26, 4}, {36, 16}};
 
 class GmshReader {
  public:
@@ -97,8 +97,9 @@ class GmshReader {
   /// Nodes of an element type; 4 for tetrahedra.
   std::size_t nodes_of(std::int64_t type) const {
     if (type == kTetrahedron) return 4;
-    const auto skipped = kSkipped.find(type);
-    if (skipped == kSkipped.end()) throw wrong_element(in_.source(), fmt::format("elements of Gmsh's type {}", type));
+    const auto skipped = kSkippedTypes.find(type);
+    if (skipped == kSkippedTypes.end())
+      throw wrong_element(in_.source(), fmt::format("elements of Gmsh's type {}", type));
     return skipped->second;
   }
 

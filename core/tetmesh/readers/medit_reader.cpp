@@ -7,19 +7,19 @@ namespace softreel::detail {
 namespace {
 
 /// Numbers in a record of the keywords that are skipped, the reference included.
-const std::map<std::string_view, std::size_t> kSkipped{{"Edges", 3},
-                                                       {"Triangles", 4},
-                                                       {"Quadrilaterals", 5},
-                                                       {"Corners", 1},
-                                                       {"RequiredVertices", 1},
-                                                       {"Ridges", 1},
-                                                       {"RequiredEdges", 1},
-                                                       {"RequiredTriangles", 1},
-                                                       {"RequiredTetrahedra", 1},
-                                                       {"Normals", 3},
-                                                       {"NormalAtVertices", 2},
-                                                       {"Tangents", 3},
-                                                       {"TangentAtVertices", 2}};
+const std::map<std::string_view, std::size_t> kSkippedSections{{"Edges", 3},
+                                                               {"Triangles", 4},
+                                                               {"Quadrilaterals", 5},
+                                                               {"Corners", 1},
+                                                               {"RequiredVertices", 1},
+                                                               {"Ridges", 1},
+                                                               {"RequiredEdges", 1},
+                                                               {"RequiredTriangles", 1},
+                                                               {"RequiredTetrahedra", 1},
+                                                               {"Normals", 3},
+                                                               {"NormalAtVertices", 2},
+                                                               {"Tangents", 3},
+                                                               {"TangentAtVertices", 2}};
 
 void read_vertices(ByteReader& in, TetFileContents& contents) {
   const std::size_t count = in.count(8);
@@ -61,7 +61,7 @@ TetFileContents read_medit(const MeshSource& source) {
       read_vertices(in, contents);
     } else if (keyword == "Tetrahedra") {
       read_tetrahedra(in, contents);
-    } else if (const auto skipped = kSkipped.find(keyword); skipped != kSkipped.end()) {
+    } else if (const auto skipped = kSkippedSections.find(keyword); skipped != kSkippedSections.end()) {
       const std::size_t numbers = in.count(2 * skipped->second) * skipped->second;
       for (std::size_t i = 0; i < numbers; ++i) in.number();
     } else {

@@ -91,7 +91,7 @@ BodyModel free_cubes(double stiffer = 1) {
   return model;
 }
 
-SimulationState swinging(const Simulator& simulator) {
+SimulationState swinging_together(const Simulator& simulator) {
   SimulationState state = simulator.state();
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     const Vec3 rest = state.positions[i];
@@ -104,7 +104,7 @@ SimulationState swinging(const Simulator& simulator) {
 TEST(GluedBodies, FreeOnesKeepTheirLinearMomentumToRoundOff) {
   for (const double stiffer : {1.0, 1e4}) {
     Bench bench(free_cubes(stiffer));
-    bench.simulator.set_state(swinging(bench.simulator));
+    bench.simulator.set_state(swinging_together(bench.simulator));
     const StateMeasures start = bench.simulator.measure();
     for (int k = 1; k <= 20; ++k) {
       ASSERT_TRUE(bench.simulator.step(k, kStep).ok());
@@ -119,7 +119,7 @@ double angular_loss(const BodyModel& model, double step) {
   SolverParams params = exact_params();
   params.integrator = Integrator::Newmark;
   Bench bench(model, params);
-  bench.simulator.set_state(swinging(bench.simulator));
+  bench.simulator.set_state(swinging_together(bench.simulator));
   const Vec3 start = bench.simulator.measure().angular_momentum;
   for (int k = 1; k <= static_cast<int>(std::lround(0.2 / step)); ++k) EXPECT_TRUE(bench.simulator.step(k, step).ok());
   return (bench.simulator.measure().angular_momentum - start).norm() / start.norm();
@@ -210,8 +210,8 @@ TEST(GluedBodies, WithoutStiffnessIsWithoutGlue) {
   BodyModel without = free_cubes();
   without.glues.clear();
   Bench a(with), b(without);
-  a.simulator.set_state(swinging(a.simulator));
-  b.simulator.set_state(swinging(b.simulator));
+  a.simulator.set_state(swinging_together(a.simulator));
+  b.simulator.set_state(swinging_together(b.simulator));
   for (int k = 1; k <= 5; ++k) {
     ASSERT_TRUE(a.simulator.step(k, kStep).ok());
     ASSERT_TRUE(b.simulator.step(k, kStep).ok());
@@ -228,7 +228,7 @@ TEST(GluedBodies, ResumeFromAnyStateWithTheSameBits) {
     model.glues[0].close_frames = 4;
     model.glues[0].distance = 0.1;
     Bench through(model, params);
-    through.simulator.set_state(swinging(through.simulator));
+    through.simulator.set_state(swinging_together(through.simulator));
     std::vector<SimulationState> states{through.simulator.state()};
     for (int k = 1; k <= 10; ++k) {
       ASSERT_TRUE(through.simulator.step(k, kStep).ok());

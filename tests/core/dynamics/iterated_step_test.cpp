@@ -17,7 +17,7 @@ using testing::Bench;
 using testing::body_model;
 using testing::exact_params;
 
-TetMesh thin_bar() {
+TetMesh thin_iterated_bar() {
   return testing::kuhn_bar({4, 1, 1}, Vec3(0.8, 0.2, 0.2));
 }
 
@@ -30,7 +30,7 @@ SolverParams iterated_params(Integrator integrator = Integrator::Euler) {
 }
 
 BodyModel pinned_bar(double damping_stiffness = 0) {
-  BodyModel model = body_model(thin_bar(), {2e4, 0.3, 1000, 0, damping_stiffness});
+  BodyModel model = body_model(thin_iterated_bar(), {2e4, 0.3, 1000, 0, damping_stiffness});
   model.pins = {testing::make_pin(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() < 1e-9; }))};
   return model;
 }
@@ -46,7 +46,7 @@ std::vector<Vec3> random_vectors(std::size_t count, double size, unsigned seed) 
 
 /// Damped from a stretch that is neither that of the present shape nor along its axes.
 TEST(StepPotential, HasItsForcesAsGradient) {
-  const TetMesh mesh = thin_bar();
+  const TetMesh mesh = thin_iterated_bar();
   const std::size_t n = mesh.nodes.size(), elements = mesh.tets.size();
   const Threads threads(1);
   const ElasticBody body = make_elastic_body(mesh, std::vector<ElementMaterial>(elements), Dilatation::Capped);
@@ -250,7 +250,7 @@ TEST(IteratedStep, StiffnessDampingLeavesARigidSpinAlone) {
   for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2}) {
     std::vector<Vec3> undamped;
     for (const double damping : {0.0, 0.05}) {
-      BodyModel model = body_model(thin_bar(), {2e10, 0.35, 1000, 0, damping});
+      BodyModel model = body_model(thin_iterated_bar(), {2e10, 0.35, 1000, 0, damping});
       model.gravity.setZero();
       Bench bench(model, iterated_without_recovery(integrator));
       SimulationState state = bench.simulator.state();

@@ -17,7 +17,7 @@ using testing::body_model;
 using testing::exact_params;
 using testing::greatest_distance;
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kHalfTurn = EIGEN_PI;
 
 ElementMaterial rubber(double poisson_ratio = 0.3) {
   ElementMaterial material;
@@ -95,7 +95,8 @@ TEST_P(RigidPins, MoveTheBodyRigidly) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Angles, RigidPins, ::testing::Values(0.0, 0.5, 0.5 * kPi, kPi, 1.5 * kPi, 7.0));
+INSTANTIATE_TEST_SUITE_P(Angles, RigidPins,
+                         ::testing::Values(0.0, 0.5, 0.5 * kHalfTurn, kHalfTurn, 1.5 * kHalfTurn, 7.0));
 
 TEST(FindEquilibrium, PassesThePatchTest) {
   // An affine motion of the boundary reproduces itself inside: F is the same in every element.
@@ -227,7 +228,7 @@ TEST(FindEquilibrium, HoldsAHalfTurnOfTwist) {
   BodyModel model = body_model(testing::kuhn_bar({12, 3, 3}, Vec3(1, 0.25, 0.25)), rubber());
   model.gravity.setZero();
   Transform turn;
-  turn.rotate.x() = kPi;
+  turn.rotate.x() = kHalfTurn;
   turn.pivot = Vec3(0, 0.125, 0.125);
   model.pins = {testing::make_pin(plane_x(model.mesh, 0)), testing::make_pin(plane_x(model.mesh, 1), turn)};
   Bench bench(model, exact_params());
@@ -242,7 +243,7 @@ int iterations_of_a_twist(RotationMethod rotation) {
   model.gravity.setZero();
   Transform start, turn;
   start.pivot = turn.pivot = Vec3(0, 0.125, 0.125);
-  turn.rotate.x() = 1.5 * kPi;
+  turn.rotate.x() = 1.5 * kHalfTurn;
   model.pins = {testing::make_pin(plane_x(model.mesh, 0)),
                 {"body.bar.pin[1]", plane_x(model.mesh, 1), {{{0, start, Ease::Linear}, {9, turn, Ease::Linear}}}, {}}};
   SolverParams params;

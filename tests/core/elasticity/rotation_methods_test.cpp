@@ -43,7 +43,7 @@ Quaternion turn(double angle, const Vec3& axis) {
   return Quaternion(Eigen::AngleAxisd(angle, axis.normalized()));
 }
 
-ElasticBody make_body(const TetMesh& mesh) {
+ElasticBody body_of(const TetMesh& mesh) {
   ElementMaterial material;
   material.youngs_modulus = 1;
   material.poisson_ratio = 0.3;
@@ -51,7 +51,7 @@ ElasticBody make_body(const TetMesh& mesh) {
 }
 
 ElasticBody make_bar_body() {
-  return make_body(testing::bcc_bar({5, 4, 3}, 0.1));
+  return body_of(testing::bcc_bar({5, 4, 3}, 0.1));
 }
 
 /// One tetrahedron with random nodes, none of its heights small.
@@ -62,7 +62,7 @@ ElasticBody random_tet(Random& random) {
     for (Vec3& node : mesh.nodes) node = random_vector(random);
   } while (std::abs(tet_volume(mesh.nodes[0], mesh.nodes[1], mesh.nodes[2], mesh.nodes[3])) < 0.3);
   mesh.tets = {testing::oriented({0, 1, 2, 3}, mesh.nodes)};
-  return make_body(mesh);
+  return body_of(mesh);
 }
 
 std::vector<Vec3> mapped(const ElasticBody& body, const Mat3& F) {
@@ -86,8 +86,8 @@ std::vector<Quaternion> all(const ElasticBody& body, const Quaternion& q) {
   return std::vector<Quaternion>(body.tets.size(), q);
 }
 
-std::vector<Vec3> forces_of(const ElasticBody& body, const std::vector<Vec3>& positions,
-                            const std::vector<Quaternion>& rotations) {
+std::vector<Vec3> forces_by_method(const ElasticBody& body, const std::vector<Vec3>& positions,
+                                   const std::vector<Quaternion>& rotations) {
   const Threads threads(1);
   std::vector<Mat3> stresses(body.tets.size());
   std::vector<Vec3> forces(positions.size());
@@ -162,9 +162,9 @@ TEST_P(EveryRotation, LeavesNoForceUnderARigidMotion) {
     const Mat3 Q = turn(step * EIGEN_PI / 6, Vec3(1, -2, 0.5)).toRotationMatrix();
     const std::vector<Vec3> positions = mapped(body, Q);
     rotations = find(body, GetParam().method, positions, rotations);
-    EXPECT_LT(greatest(forces_of(body, positions, rotations)), 1e-14 * scale) << step;
+    EXPECT_LT(greatest(forces_by_method(body, positions, rotations)), 1e-14 * scale) << step;
     if (step % 12 != 0) {
-      EXPECT_GT(greatest(forces_of(body, positions, none)), 1e-2 * scale) << "small strain: the check can fail";
+      EXPECT_GT(greatest(forces_by_method(body, positions, none)), 1e-2 * scale) << "small strain: the check can fail";
     }
   }
 }
@@ -186,7 +186,7 @@ TEST_P(EveryRotation, TurnsWithTheBody) {
 }
 
 TEST_P(EveryRotation, IsTheSameForAnyNumberOfThreads) {
-  const ElasticBody body = make_body(testing::bcc_bar({9, 8, 7}, 0.1));
+  const ElasticBody body = body_of(testing::bcc_bar({9, 8, 7}, 0.1));
   ASSERT_GT(body.tets.size(), 2000u);
   Random random(5);
   const std::vector<Vec3> positions = with_noise(mapped(body, Mat3::Identity()), 0.02, random);
@@ -203,7 +203,7 @@ TEST_P(EveryRotation, DependsOnTheOrderOfNodesForQrOnly) {
   const auto found = find(body, GetParam().method, positions, all(body, Quaternion::Identity()));
   TetMesh mesh{body.rest_positions, body.tets, {}};
   for (Tet& tet : mesh.tets) tet = {tet[2], tet[0], tet[1], tet[3]};
-  const ElasticBody reordered = make_body(mesh);
+  const ElasticBody reordered = body_of(mesh);
   const double gap =
       greatest_gap(find(reordered, GetParam().method, positions, all(body, Quaternion::Identity())), found);
   if (GetParam().method == RotationMethod::Qr)
@@ -261,7 +261,8 @@ Gap gap_at(const ElasticBody& body, RotationMethod method, const Mat3& E, double
   const std::vector<Vec3> positions = mapped(body, Q.toRotationMatrix() * (Mat3::Identity() + strain * E));
   const auto consistent = find(body, RotationMethod::Consistent, positions, {Q});
   const auto found = find(body, method, positions, {Q});
-  const std::vector<Vec3> exact = forces_of(body, positions, consistent), forces = forces_of(body, positions, found);
+  const std::vector<Vec3> exact = forces_by_method(body, positions, consistent),
+                          forces = forces_by_method(body, positions, found);
   Gap gap{greatest_gap(found, consistent), 0, 0, 0};
   Vec3 torque = Vec3::Zero();
   for (std::size_t i = 0; i < forces.size(); ++i) {
@@ -299,7 +300,7 @@ TEST(Eq3Rotation, IsTheConsistentOneOnARegularTetrahedron) {
   Random random(9);
   TetMesh mesh{{Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)}, {}, {}};
   mesh.tets = {testing::oriented({0, 1, 2, 3}, mesh.nodes)};
-  const ElasticBody body = make_body(mesh);
+  const ElasticBody body = body_of(mesh);
   for (int sample = 0; sample < 50; ++sample) {
     const std::vector<Vec3> positions = mapped(body, random_matrix(random));
     EXPECT_LT(greatest_gap(find(body, RotationMethod::Energy, positions, all(body, Quaternion::Identity())),

@@ -45,16 +45,16 @@ MultigridParams params_of(const Choice& choice) {
   return params;
 }
 
-struct Solution {
+struct CycleSolution {
   SolveReport report;
   std::vector<Vec3> x;
 };
 
-Solution solve(const TetMesh& mesh, const ElasticSystem& system, const MultigridParams& params, int thread_count) {
+CycleSolution solve(const TetMesh& mesh, const ElasticSystem& system, const MultigridParams& params, int thread_count) {
   const Threads threads(thread_count);
   Multigrid multigrid(mesh, {}, system.matrix.pattern, params, threads);
   multigrid.update(system.matrix, system.pinned);
-  Solution solution;
+  CycleSolution solution;
   solution.x.assign(mesh.nodes.size(), Vec3::Zero());
   solution.report = multigrid.solve(system.matrix, system.load, solution.x, 1e-9, 0, 200);
   return solution;
@@ -77,7 +77,8 @@ TEST(CycleChoices, ComeToTheSameAnswerWithTheSameBitsAtAnyThreadCount) {
     const ElasticSystem system = assemble(mesh, elastic, at_left_end);
     std::vector<Vec3> reference;
     for (const Choice& choice : kChoices) {
-      const Solution one = solve(mesh, system, params_of(choice), 1), four = solve(mesh, system, params_of(choice), 4);
+      const CycleSolution one = solve(mesh, system, params_of(choice), 1),
+                          four = solve(mesh, system, params_of(choice), 4);
       EXPECT_EQ(one.report.status, SolveStatus::Converged) << choice.name;
       EXPECT_FALSE(one.report.double_cycle) << choice.name;
       EXPECT_LE(test_support::relative_residual(system.matrix, system.load, one.x), 1.01e-9) << choice.name;

@@ -35,11 +35,11 @@ int iterations_of_filling(const SurfaceMesh& surface, TetMode mode, double edge,
   return report.iterations;
 }
 
-constexpr double kSteps[] = {0.0, 1.0 / 96};
+constexpr double kEmbeddedSteps[] = {0.0, 1.0 / 96};
 
 /// From the first lattice to finer ones, by a third at most.
 void expect_no_growth(const SurfaceMesh& surface, const std::vector<double>& edges, double pinned_below) {
-  for (const double seconds : kSteps) {
+  for (const double seconds : kEmbeddedSteps) {
     const int coarse = iterations_of_filling(surface, TetMode::Embedded, edges.front(), seconds, pinned_below);
     for (const double edge : edges)
       EXPECT_LE(iterations_of_filling(surface, TetMode::Embedded, edge, seconds, pinned_below), 1.3 * coarse + 1)
@@ -57,7 +57,7 @@ TEST(EmbeddedIterations, OfFingersSideBySideInOneCellDoNotGrowWithTheirSize) {
 
 TEST(EmbeddedIterations, OfABarAreThoseOfAConformingOneWithinAHalf) {
   const SurfaceMesh bar = test::make_box({0.5, 0.125, 0.125}, 8, Vec3::Zero());
-  for (const double seconds : kSteps)
+  for (const double seconds : kEmbeddedSteps)
     for (const double edge : {0.06, 0.03})
       EXPECT_LE(iterations_of_filling(bar, TetMode::Embedded, edge, seconds, -0.45),
                 1.5 * iterations_of_filling(bar, TetMode::Conforming, edge, seconds, -0.45));

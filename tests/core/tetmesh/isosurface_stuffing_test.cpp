@@ -17,7 +17,7 @@ using test::euler_characteristic;
 using test::expect_good_tets;
 using test::expect_manifold_boundary;
 
-Bounds box_of(double half_size) {
+Bounds lattice_box(double half_size) {
   Bounds box;
   box.add(Vec3::Constant(-half_size));
   box.add(Vec3::Constant(half_size));
@@ -33,7 +33,7 @@ double torus(const Vec3& p) {
 }
 
 TetMesh fill(const LatticeFrame& frame, const std::function<double(const Vec3&)>& distance) {
-  StuffedMesh stuffed = stuff_isosurface(sample_distance(frame, box_of(1.2), distance), Threads(1));
+  StuffedMesh stuffed = stuff_isosurface(sample_distance(frame, lattice_box(1.2), distance), Threads(1));
   mend_boundary(stuffed);
   return std::move(stuffed.mesh);
 }
@@ -81,7 +81,7 @@ TEST(StuffIsosurface, KeepsItsAnglesForRandomValues) {
   std::uniform_real_distribution<double> value(-1.0, 1.0);
   for (int i = 0; i < 4; ++i) {
     const auto noise = [&](const Vec3& p) { return p.cwiseAbs().maxCoeff() > 0.9 ? 1.0 : std::pow(value(random), 3); };
-    StuffedMesh stuffed = stuff_isosurface(sample_distance({Vec3::Zero(), 0.2}, box_of(1.0), noise), Threads(1));
+    StuffedMesh stuffed = stuff_isosurface(sample_distance({Vec3::Zero(), 0.2}, lattice_box(1.0), noise), Threads(1));
     ASSERT_GT(stuffed.mesh.tets.size(), 1000U);
     expect_good_tets(stuffed.mesh);
     mend_boundary(stuffed);
@@ -93,7 +93,7 @@ TEST(StuffIsosurface, KeepsItsAnglesForRandomValues) {
 TEST(StuffIsosurface, KeepsItsAnglesInTheAdversarialCase) {
   // Nodes at (+-1, 1, 1) warped by the largest step along their short edges towards N = (0, 0, 2), the long edge from
   // the origin to N cut just beyond the warping distance.
-  LatticeDistance distance = sample_distance({Vec3::Zero(), 2.0}, box_of(8.0), [](const Vec3&) { return 1.0; });
+  LatticeDistance distance = sample_distance({Vec3::Zero(), 2.0}, lattice_box(8.0), [](const Vec3&) { return 1.0; });
   const auto set = [&](const LatticeNode& node, double value) {
     distance.values[static_cast<std::size_t>(distance.nodes.find(node))] = value;
   };
@@ -117,7 +117,7 @@ TEST(StuffIsosurface, KeepsItsAnglesInTheAdversarialCase) {
 }
 
 TEST(StuffIsosurface, GivesEqualBitsAtOneAndFourThreads) {
-  const LatticeDistance distance = sample_distance({Vec3(0.01, 0.02, 0.03), 0.08}, box_of(1.2), torus);
+  const LatticeDistance distance = sample_distance({Vec3(0.01, 0.02, 0.03), 0.08}, lattice_box(1.2), torus);
   const StuffedMesh one = stuff_isosurface(distance, Threads(1)), four = stuff_isosurface(distance, Threads(4));
   EXPECT_EQ(one.mesh.nodes, four.mesh.nodes);
   EXPECT_EQ(one.mesh.tets, four.mesh.tets);
@@ -129,7 +129,7 @@ TEST(StuffIsosurface, OfNothingInsideIsEmpty) {
 
 TEST(MendBoundary, PartsBallsThatTouch) {
   // Two lattice nodes two long edges apart, each alone inside: their cells meet at a node.
-  LatticeDistance distance = sample_distance({Vec3::Zero(), 2.0}, box_of(8.0), [](const Vec3&) { return 1.0; });
+  LatticeDistance distance = sample_distance({Vec3::Zero(), 2.0}, lattice_box(8.0), [](const Vec3&) { return 1.0; });
   const auto set = [&](const LatticeNode& node, double value) {
     distance.values[static_cast<std::size_t>(distance.nodes.find(node))] = value;
   };

@@ -48,7 +48,7 @@ SurfaceMesh random_soup(Random& random, Index count, double size, const Vec3& ce
 TEST(TriangleTree, FindsTheNearestOfAllWithAllBits) {
   Random random(2);
   // Counts round the eights that fill nodes and levels.
-  for (const Index count : {1, 7, 8, 9, 63, 64, 65, 511, 513, 700}) {
+  for (const Index count : {1, 7, 8, 9, 63, 64, 65, 511, 513, 700, 4095, 4097, 5000}) {
     SCOPED_TRACE(count);
     const SurfaceMesh soup = random_soup(random, count, 1, Vec3::Zero());
     const TriangleTree tree(soup.positions, soup.triangles);

@@ -11,7 +11,7 @@
 namespace softreel {
 namespace {
 
-struct Case {
+struct LampCase {
   const char* name;
   AreaLight lamp;
   double irradiance;  ///< at the origin on a patch that faces up, for radiance 1
@@ -32,7 +32,7 @@ double rectangle_irradiance(double a, double b, double h) {
   return 2 * (a / x * std::atan(b / x) + b / y * std::atan(a / y));
 }
 
-std::vector<Case> cases() {
+std::vector<LampCase> cases() {
   const double d2 = 0.9 * 0.9 + 1.2 * 1.2;
   return {
       {"disk", lamp_above(LampShape::Disk, Vec3f(0, 1, 0), 0.5f, 0.5f), M_PI * 0.25 / (0.25 + 1)},
@@ -83,7 +83,7 @@ double scattered_irradiance(const LightSet& lights, bool weighed, std::uint32_t 
 }
 
 TEST(Lamp, GivesTheIrradianceOfItsGeometry) {
-  for (const Case& c : cases()) {
+  for (const LampCase& c : cases()) {
     Scene scene = scene_in_sky(0);
     scene.area_lights = {c.lamp};
     const LightSet lights(scene);
@@ -94,7 +94,7 @@ TEST(Lamp, GivesTheIrradianceOfItsGeometry) {
 }
 
 TEST(Lamp, SampledDirectionsMeetItWhereTheSampleSays) {
-  for (const Case& c : cases()) {
+  for (const LampCase& c : cases()) {
     Scene scene = scene_in_sky(0);
     scene.area_lights = {c.lamp};
     const LightSet lights(scene);

@@ -69,13 +69,13 @@ TEST_F(SetOverrides, ReplaceThePresets) {
 }
 
 /// An override that leads nowhere and parts of its message.
-struct Wrong {
+struct WrongOverride {
   const char* set;
   std::vector<const char*> parts;
 };
 
 TEST_F(SetOverrides, SayWhatIsWrongWithThem) {
-  const std::vector<Wrong> cases{
+  const std::vector<WrongOverride> cases{
       {"body.tetz=3", {"--set: body.tetz = 3", "neither a body nor a field", "Did you mean 'tets'?"}},
       {"body.b.tets=3", {"--set: body.b.tets = 3", "neither a body nor a field of a body named b"}},
       {"body.a.tetz=3", {"--set: body.a.tetz = 3", "no field of this name", "Did you mean 'tets'?"}},
@@ -97,7 +97,7 @@ TEST_F(SetOverrides, SayWhatIsWrongWithThem) {
       {"shot.fps=fast", {"--set: shot.fps = \"fast\"", "it is text, not a number"}},
   };
   const std::string text = body("[shot]\nfps = 24\n[[light]]\ntype = \"area\"\n[material.gel]\n");
-  for (const Wrong& wrong : cases) {
+  for (const WrongOverride& wrong : cases) {
     const std::string said = message(text, {wrong.set});
     for (const char* part : wrong.parts)
       EXPECT_NE(said.find(part), std::string::npos) << "no '" << part << "' in:\n" << said;

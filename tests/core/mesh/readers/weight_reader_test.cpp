@@ -12,7 +12,7 @@ std::vector<double> weights_in(const std::string& name, const std::string& text,
   return read_weights(folder.write(name, text), attribute);
 }
 
-std::string refusal(const std::string& name, const std::string& text, const std::string& attribute = "") {
+std::string refused_weights(const std::string& name, const std::string& text, const std::string& attribute = "") {
   try {
     weights_in(name, text, attribute);
   } catch (const Error& error) {
@@ -36,10 +36,10 @@ TEST(WeightReader, TakesAPropertyOfPlyVertices) {
 }
 
 TEST(WeightReader, NamesTheLineOfWhatIsNoWeight) {
-  EXPECT_NE(refusal("a.txt", "0\nsoft\n").find("a.txt:2: 'soft' is not a number"), std::string::npos);
-  EXPECT_NE(refusal("a.txt", "0\n1\n1.5\n").find("a.txt:3: 1.5 is no weight"), std::string::npos);
-  EXPECT_NE(refusal("a.txt", "nan\n").find("no weight"), std::string::npos);
-  const std::string unknown = refusal("a.ply", kPly, "gaol");
+  EXPECT_NE(refused_weights("a.txt", "0\nsoft\n").find("a.txt:2: 'soft' is not a number"), std::string::npos);
+  EXPECT_NE(refused_weights("a.txt", "0\n1\n1.5\n").find("a.txt:3: 1.5 is no weight"), std::string::npos);
+  EXPECT_NE(refused_weights("a.txt", "nan\n").find("no weight"), std::string::npos);
+  const std::string unknown = refused_weights("a.ply", kPly, "gaol");
   for (const char* part : {"no number 'gaol'", "x, goal, weight", "Did you mean 'goal'?"})
     EXPECT_NE(unknown.find(part), std::string::npos) << unknown;
 }
