@@ -5,14 +5,14 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kRowGrain = 512;
+constexpr std::int64_t kSystemRowGrain = 512;
 
 /// Mean diagonal entry of the rows that are not held; 1 if all are.
 double mean_diagonal(const BlockMatrixd& matrix, std::span<const std::uint8_t> held, const Threads& threads) {
   const BlockPattern& pattern = matrix.pattern;
   double rows = 0;
   for (const std::uint8_t h : held) rows += h == 0 ? 1 : 0;
-  const double sum = threads.sum_chunks(pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+  const double sum = threads.sum_chunks(pattern.rows(), kSystemRowGrain, [&](std::int64_t begin, std::int64_t end) {
     double part = 0;
     for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row) {
       if (held[row] != 0) continue;
@@ -28,7 +28,7 @@ double mean_diagonal(const BlockMatrixd& matrix, std::span<const std::uint8_t> h
 
 void multiply(const BlockMatrixd& matrix, std::span<const Vec3> x, std::span<Vec3> product, const Threads& threads) {
   const BlockPattern& pattern = matrix.pattern;
-  threads.for_chunks(pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(pattern.rows(), kSystemRowGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row) {
       Vec3 sum = Vec3::Zero();
       for (std::int64_t b = pattern.row_offsets[row]; b < pattern.row_offsets[row + 1]; ++b) {
@@ -46,7 +46,7 @@ void multiply(const BlockMatrixd& matrix, std::span<const Vec3> x, std::span<Vec
 void eliminate_held(BlockMatrixd& matrix, std::span<const std::uint8_t> held, const Threads& threads) {
   const double diagonal = mean_diagonal(matrix, held, threads);
   const BlockPattern& pattern = matrix.pattern;
-  threads.for_chunks(pattern.rows(), kRowGrain, [&](std::int64_t begin, std::int64_t end) {
+  threads.for_chunks(pattern.rows(), kSystemRowGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto row = static_cast<std::size_t>(begin); row < static_cast<std::size_t>(end); ++row)
       for (std::int64_t b = pattern.row_offsets[row]; b < pattern.row_offsets[row + 1]; ++b) {
         const auto column = static_cast<std::size_t>(pattern.column_indices[static_cast<std::size_t>(b)]);

@@ -25,7 +25,7 @@ constexpr double kCheapFactorWork = 100;
 constexpr double kMostCopies = 2;
 
 /// Lattice coordinates are kept far inside the range of lattice_key.
-constexpr double kMaxLatticeCoordinate = 500000;
+constexpr double kMostSpacings = 500000;
 
 Vec3 lower_corner(const std::vector<Vec3>& points) {
   Vec3 low = points.front();
@@ -62,8 +62,8 @@ LatticeFrame finest_frame(const TetMesh& mesh) {
   if (!(frame.spacing > 0)) frame.spacing = extent > 0 ? extent : 1.0;
   // A frame far away or absurdly fine for the mesh would leave the range of lattice coordinates.
   const double reach = (low - frame.origin).cwiseAbs().maxCoeff() + extent;
-  if (2 * reach / frame.spacing > kMaxLatticeCoordinate) frame.origin = low;
-  frame.spacing = std::max(frame.spacing, 2 * extent / kMaxLatticeCoordinate);
+  if (2 * reach / frame.spacing > kMostSpacings) frame.origin = low;
+  frame.spacing = std::max(frame.spacing, 2 * extent / kMostSpacings);
   return frame;
 }
 

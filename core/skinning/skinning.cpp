@@ -17,12 +17,12 @@ Mat3 edges_of(const Tet& tet, const std::vector<Vec3>& x) {
 }
 
 /// Elements of each node, ascending.
-struct NodeElements {
+struct ElementLists {
   std::vector<Index> offsets, elements;
 };
 
-NodeElements elements_of_nodes(const TetMesh& mesh) {
-  NodeElements list;
+ElementLists elements_of_nodes(const TetMesh& mesh) {
+  ElementLists list;
   list.offsets.assign(mesh.nodes.size() + 1, 0);
   for (const Tet& tet : mesh.tets)
     for (const Index node : tet) ++list.offsets[at(node) + 1];
@@ -37,7 +37,7 @@ NodeElements elements_of_nodes(const TetMesh& mesh) {
 /// Deformation gradients, averaged by volume of material over the elements of each node; only of nodes that are wanted.
 std::vector<Mat3> nodal_gradients(const TetMesh& mesh, const std::vector<Vec3>& node_positions,
                                   const std::vector<bool>& wanted, const Threads& threads) {
-  const NodeElements list = elements_of_nodes(mesh);
+  const ElementLists list = elements_of_nodes(mesh);
   std::vector<Mat3> gradients(mesh.nodes.size(), Mat3::Identity());
   threads.for_chunks(static_cast<std::int64_t>(mesh.nodes.size()), kSkinningGrain,
                      [&](std::int64_t begin, std::int64_t end) {

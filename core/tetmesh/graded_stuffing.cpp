@@ -46,35 +46,35 @@ bool starts_at_first(const LatticeNode& p, const LatticeNode& q, const LatticeNo
 constexpr double kWarpGraded = 0.3;
 
 /// Corners of a tetrahedron, by number.
-using TetCorners = std::array<Index, 4>;
+using CornerNumbers = std::array<Index, 4>;
 
 /// The tetrahedra between the leaves, in blocks: growing moves none of them, and each block goes when it is done with.
 class CornerBlocks {
  public:
-  void push_back(const TetCorners& corners) {
+  void push_back(const CornerNumbers& corners) {
     if (blocks_.empty() || blocks_.back().size() == kBlockSize) blocks_.emplace_back().reserve(kBlockSize);
     blocks_.back().push_back(corners);
   }
 
   template <typename Visit>
   void visit(const Visit& visit) const {
-    for (const std::vector<TetCorners>& block : blocks_)
-      for (const TetCorners& corners : block) visit(corners);
+    for (const std::vector<CornerNumbers>& block : blocks_)
+      for (const CornerNumbers& corners : block) visit(corners);
   }
 
   /// Visits all and frees them on the way.
   template <typename Visit>
   void take(const Visit& visit) {
-    for (std::vector<TetCorners>& block : blocks_) {
-      for (const TetCorners& corners : block) visit(corners);
-      std::vector<TetCorners>().swap(block);
+    for (std::vector<CornerNumbers>& block : blocks_) {
+      for (const CornerNumbers& corners : block) visit(corners);
+      std::vector<CornerNumbers>().swap(block);
     }
     blocks_.clear();
   }
 
  private:
   static constexpr std::size_t kBlockSize = 1 << 14;
-  std::vector<std::vector<TetCorners>> blocks_;
+  std::vector<std::vector<CornerNumbers>> blocks_;
 };
 
 class Stuffing {
@@ -86,7 +86,7 @@ class Stuffing {
     for (const double value : values)
       signs_.push_back(value < 0 ? NodeSign::Inside : value > 0 ? NodeSign::Outside : NodeSign::Surface);
     octree.visit_tets(nodes, [&](const std::array<LatticeNode, 4>& tet) {
-      TetCorners corners;
+      CornerNumbers corners;
       bool inside = false;
       for (std::size_t k = 0; k < 4; ++k) {
         corners[k] = nodes.find(tet[k]);
@@ -104,7 +104,7 @@ class Stuffing {
     reserve(stuffed);
     node_numbers_.assign(nodes_.size(), -1);
     cut_numbers_.assign(ends_.size(), -1);
-    tets_.take([&](const TetCorners& corners) { emit(corners, stuffed); });
+    tets_.take([&](const CornerNumbers& corners) { emit(corners, stuffed); });
     return stuffed;
   }
 
@@ -114,7 +114,7 @@ class Stuffing {
 
   template <typename Visit>
   void visit_cut_edges(const Visit& visit) const {
-    tets_.visit([&](const TetCorners& tet) {
+    tets_.visit([&](const CornerNumbers& tet) {
       for (const auto& [a, b] : kStencilEdges)
         if (are_opposite(tet[a], tet[b])) visit(tet[a], tet[b]);
     });
@@ -151,7 +151,7 @@ class Stuffing {
   /// Per node: the shortest edge, units.
   std::vector<double> find_shortest_edges() const {
     std::vector<double> shortest(nodes_.size(), 1e300);
-    tets_.visit([&](const TetCorners& tet) {
+    tets_.visit([&](const CornerNumbers& tet) {
       for (const auto& [a, b] : kStencilEdges) {
         const double length = std::sqrt(static_cast<double>(squared_length(nodes_[at(tet[a])], nodes_[at(tet[b])])));
         for (const Index end : {tet[a], tet[b]}) shortest[at(end)] = std::min(shortest[at(end)], length);
@@ -203,7 +203,7 @@ class Stuffing {
   /// Room for all elements, and for the nodes that they can have at most.
   void reserve(StuffedMesh& stuffed) const {
     std::size_t tets = 0, nodes = 0;
-    tets_.visit([&](const TetCorners& corners) { tets += cut_stencil(signs_of(corners)).count; });
+    tets_.visit([&](const CornerNumbers& corners) { tets += cut_stencil(signs_of(corners)).count; });
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (signs_[i] != NodeSign::Outside) ++nodes;
       for (Index e = offsets_[i]; e < offsets_[i + 1] && signs_[i] == NodeSign::Inside; ++e)
@@ -215,11 +215,11 @@ class Stuffing {
     stuffed.on_surface.reserve(nodes);
   }
 
-  std::array<NodeSign, 4> signs_of(const TetCorners& corners) const {
+  std::array<NodeSign, 4> signs_of(const CornerNumbers& corners) const {
     return {sign(corners[0]), sign(corners[1]), sign(corners[2]), sign(corners[3])};
   }
 
-  void emit(const TetCorners& corners, StuffedMesh& stuffed) {
+  void emit(const CornerNumbers& corners, StuffedMesh& stuffed) {
     const std::array<NodeSign, 4> signs = signs_of(corners);
     if (std::find(signs.begin(), signs.end(), NodeSign::Inside) == signs.end()) return;
     DiagonalRule rule;
@@ -232,7 +232,7 @@ class Stuffing {
     }
   }
 
-  DiagonalRule rule_of(const TetCorners& corners) const {
+  DiagonalRule rule_of(const CornerNumbers& corners) const {
     DiagonalRule rule;
     for (std::size_t p = 0; p < 4; ++p)
       for (std::size_t q = 0; q < 4; ++q)
@@ -244,7 +244,7 @@ class Stuffing {
   }
 
   /// Number of a stencil vertex in the mesh; numbered when it is first met.
-  Index mesh_node(const TetCorners& corners, std::uint8_t vertex, StuffedMesh& stuffed) {
+  Index mesh_node(const CornerNumbers& corners, std::uint8_t vertex, StuffedMesh& stuffed) {
     if (vertex < 4) {
       const Index i = corners[vertex];
       Index& number = node_numbers_[at(i)];

@@ -47,8 +47,7 @@ class Blocks {
 
   const std::vector<Block>& list() const { return blocks_; }
 
-  /// TriangleCorners in voxels; the origin is subtracted in double, so that nothing is lost far from the world's
-  /// origin.
+  /// Corners in voxels; the origin is subtracted in double, so that nothing is lost far from the world's origin.
   TriangleCorners corners(Index triangle) const {
     TriangleCorners x;
     for (std::size_t k = 0; k < 3; ++k)

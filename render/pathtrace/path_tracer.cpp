@@ -9,7 +9,6 @@
 
 #include "core/base/check.h"
 #include "core/base/error.h"
-#include "core/base/timer.h"
 #include "render/pathtrace/adaptive_sampling.h"
 #include "render/pathtrace/camera_rays.h"
 #include "render/pathtrace/path_integrator.h"

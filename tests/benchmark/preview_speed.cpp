@@ -10,6 +10,7 @@
 #include <ctime>
 
 #include "core/base/error.h"
+#include "core/base/timer.h"
 #include "render/preview/preview.h"
 #include "tests/render/test_scenes.h"
 
@@ -21,7 +22,7 @@ struct Clock {
   std::clock_t cpu = std::clock();
 
   void print(const char* what, std::size_t triangles, int frames) const {
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+    const double seconds = seconds_since(wall);
     const double busy = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
     std::printf("%s\t%zu\t%.2f\t%.2f\n", what, triangles, 1000 * seconds / frames, 1000 * busy / frames);
   }

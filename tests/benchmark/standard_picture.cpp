@@ -23,6 +23,7 @@
 #include <sys/resource.h>
 
 #include "core/base/error.h"
+#include "core/base/timer.h"
 #include "core/mesh/surface_mesh.h"
 #include "render/image/image_io.h"
 #include "render/pathtrace/path_tracer.h"
@@ -168,7 +169,7 @@ Seconds seconds_of(const Work& work) {
   const double cpu_before = cpu();
   const auto start = std::chrono::steady_clock::now();
   work();
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double wall = seconds_since(start);
   return {wall, cpu() - cpu_before};
 }
 

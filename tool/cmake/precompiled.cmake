@@ -13,19 +13,22 @@ function(softreel_precompile target)
 endfunction()
 
 # softreel_compile_in_groups(TARGET SIZE): at most so many sources of a folder at a time, which reads their headers and
-# makes their templates once; not kernels, which stay as they are measured. Names in anonymous namespaces of one folder
-# must differ. For what is compiled whole more often than source by source; called when the target has all its sources.
+# makes their templates once; not those that are written for vector instructions (_simd.cpp). Names in anonymous
+# namespaces of one folder must differ. For what is compiled whole more often than source by source; called when the
+# target has all its sources.
 function(softreel_compile_in_groups target size)
   if(NOT SOFTREEL_PRECOMPILE)  # where it is asked what sources forget to include
     return()
   endif()
   get_target_property(sources ${target} SOURCES)
+  get_target_property(target_folder ${target} SOURCE_DIR)
   set(folders)
   foreach(source ${sources})
     get_source_file_property(alone "${source}" TARGET_DIRECTORY ${target} SKIP_UNITY_BUILD_INCLUSION)
     if(alone OR source MATCHES "_simd\\.cpp$")
       continue()
     endif()
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY "${target_folder}")
     cmake_path(RELATIVE_PATH source BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" OUTPUT_VARIABLE relative)
     cmake_path(GET relative PARENT_PATH folder)
     list(APPEND folders "${folder}")

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/base/timer.h"
 #include "render/image/burn_in.h"
 #include "render/preview/preview.h"
 #include "tool/commands/commands.h"
@@ -77,8 +78,7 @@ class Playblast {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<std::vector<char>> shown = cut_ ? cut_->shown_points() : std::vector<std::vector<char>>{};
     const Bytes png = encode_png(draw(frame, scene, gizmos_.at(frame, bodies, shown)));
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    outputs_.write(path, key, png, seconds.count());
+    outputs_.write(path, key, png, seconds_since(start));
     return true;
   }
   double saved_seconds() const { return saved_seconds_; }

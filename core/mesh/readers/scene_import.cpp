@@ -11,7 +11,7 @@ namespace {
 
 #if SOFTREEL_WITH_ASSIMP
 
-SceneAnimation read_with_assimp(const std::string& path, const Log&) {
+SceneAnimation read_scene_with_assimp(const std::string& path, const Log&) {
   static const auto read =
       part_function<&detail::softreel_read_scene_with_assimp>("assimp", "softreel_read_scene_with_assimp");
   return read(path);
@@ -19,7 +19,7 @@ SceneAnimation read_with_assimp(const std::string& path, const Log&) {
 
 #else
 
-SceneAnimation read_with_assimp(const std::string& path, const Log&) {
+SceneAnimation read_scene_with_assimp(const std::string& path, const Log&) {
   throw input_error(fmt::format(
       "{}: animated scenes need assimp, which was not built in.\n  Accepted without it: point caches, .pc2 and .mdd. "
       "Configure with SOFTREEL_WITH_ASSIMP=ON, or export the motion as a point cache.",
@@ -42,7 +42,7 @@ void warn_of_curves(const std::string& path, const Log& log) {
 
 SceneAnimation import_scene(const std::string& path, const Log& log) {
   detail::require_mesh_file(path);
-  SceneAnimation scene = read_with_assimp(path, log);
+  SceneAnimation scene = read_scene_with_assimp(path, log);
   warn_of_curves(path, log);
   return scene;
 }

@@ -15,15 +15,15 @@ namespace {
 using namespace softreel::testing;
 using nlohmann::json;
 
-constexpr int kFrames = 8;
+constexpr int kClockFrames = 8;
 
 /// Runs under a clock that jumps by years, or an honest one without a seed.
-json render(const std::string& folder, const std::string& output, const std::string& clock_seed) {
+json render_by_clock(const std::string& folder, const std::string& output, const std::string& clock_seed) {
   const Abuse abuse = clock_seed.empty() ? Abuse() : Abuse{{"CLOCK", clock_seed}};
   const Outcome outcome =
       run_abused(fmt::format("render {}/shot.toml --output {} --quiet --json --set shot.frames=[1,{}] "
                              "--set output.movie=true",
-                             folder, output, kFrames),
+                             folder, output, kClockFrames),
                  abuse);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
@@ -32,7 +32,7 @@ json render(const std::string& folder, const std::string& output, const std::str
 
 void expect_nothing_made(const json& report) {
   EXPECT_EQ(report["pictures"]["traced"], 0);
-  EXPECT_EQ(report["pictures"]["kept"], kFrames);
+  EXPECT_EQ(report["pictures"]["kept"], kClockFrames);
   EXPECT_EQ(report["simulation"]["computed"], 0);
   EXPECT_TRUE(report["bodies"][0].value("tets_from_cache", true));
 }
@@ -46,39 +46,39 @@ void set_dates(const std::string& folder, time_t seconds) {
 
 TEST(Clock, ThatJumpsByYearsChangesNothing) {
   const std::string folder = shot_folder("clock");
-  render(folder, folder + "/reference", "");
-  const json report = render(folder, folder + "/out", "5");
-  EXPECT_EQ(report["pictures"]["traced"], kFrames);
+  render_by_clock(folder, folder + "/reference", "");
+  const json report = render_by_clock(folder, folder + "/out", "5");
+  EXPECT_EQ(report["pictures"]["traced"], kClockFrames);
   EXPECT_LT(report["seconds"].get<double>(), 600) << "the report measures by the monotonic clock";
   expect_equal_final_files(folder + "/reference", folder + "/out");
-  for (const char* seed : {"6", "7", "8"}) expect_nothing_made(render(folder, folder + "/out", seed));
+  for (const char* seed : {"6", "7", "8"}) expect_nothing_made(render_by_clock(folder, folder + "/out", seed));
   expect_equal_final_files(folder + "/reference", folder + "/out");
 }
 
 TEST(Clock, DatesOfFilesMeanNothing) {
   const std::string folder = shot_folder("dates");
-  render(folder, folder + "/reference", "");
-  render(folder, folder + "/out", "");
+  render_by_clock(folder, folder + "/reference", "");
+  render_by_clock(folder, folder + "/out", "");
   for (const time_t seconds : {time_t{0}, time_t{4102444800}, time_t{1}}) {
     set_dates(folder + "/out", seconds);
-    expect_nothing_made(render(folder, folder + "/out", ""));
+    expect_nothing_made(render_by_clock(folder, folder + "/out", ""));
     expect_equal_final_files(folder + "/reference", folder + "/out");
   }
 }
 
 TEST(Clock, ANewerMeshWithTheSameBytesIsTheSame) {
   const std::string folder = shot_folder("newer");
-  render(folder, folder + "/out", "");
+  render_by_clock(folder, folder + "/out", "");
   write_text(folder + "/sphere.obj", read_text(folder + "/sphere.obj"));
-  expect_nothing_made(render(folder, folder + "/out", ""));
+  expect_nothing_made(render_by_clock(folder, folder + "/out", ""));
 }
 
 TEST(Clock, AnOlderMeshWithOtherBytesIsAnother) {
   const std::string folder = shot_folder("older");
-  const json first = render(folder, folder + "/out", "");
+  const json first = render_by_clock(folder, folder + "/out", "");
   write_text(folder + "/sphere.obj", sphere_obj(14));
   set_dates(folder, 1);
-  const json report = render(folder, folder + "/out", "");
+  const json report = render_by_clock(folder, folder + "/out", "");
   EXPECT_EQ(report["simulation"]["loaded"], 0);
   EXPECT_EQ(report["pictures"]["kept"], 0);
 }

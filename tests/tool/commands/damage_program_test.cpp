@@ -14,7 +14,7 @@ namespace {
 using namespace softreel::testing;
 namespace fs = std::filesystem;
 
-constexpr const char* kFrames = "--set shot.frames=[1,8]";
+constexpr const char* kDamageFrames = "--set shot.frames=[1,8]";
 
 using Random = std::mt19937_64;
 
@@ -120,7 +120,7 @@ class DamageTest : public ::testing::Test {
     write_text(path, bytes);
   }
 
-  std::string folder_, options_ = kFrames;
+  std::string folder_, options_ = kDamageFrames;
 };
 
 TEST_F(DamageTest, OfACacheFileIsSaidAndMended) {

@@ -12,7 +12,7 @@ namespace {
 
 using namespace softreel::testing;
 
-constexpr const char* kFrames = "--set shot.frames=[1,8]";
+constexpr const char* kDiskFrames = "--set shot.frames=[1,8]";
 
 bool says_disk_is_full(const std::string& text) {
   return text.find("No space left on device") != std::string::npos || text.find("disk is full") != std::string::npos;
@@ -24,7 +24,7 @@ class DiskFull : public ::testing::Test {
 
   std::string arguments(const std::string& output, const std::string& cache, const std::string& more) const {
     return fmt::format("{} {}/shot.toml --output {} --cache {} --quiet {} {}", command_, folder_, output, cache,
-                       kFrames, more);
+                       kDiskFrames, more);
   }
 
   /// Renders a reference and returns the bytes it wrote, those of the encoder too.

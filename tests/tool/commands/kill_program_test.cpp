@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "core/base/timer.h"
 #include "tests/tool/commands/survival.h"
 
 namespace softreel {
@@ -16,7 +17,7 @@ namespace {
 
 using namespace softreel::testing;
 
-constexpr int kFrames = 10;
+constexpr int kKillFrames = 10;
 constexpr int kTries = 100, kTriesOfAVariant = 4;
 
 using Pictures = std::map<std::string, std::string>;
@@ -37,7 +38,7 @@ Variant make_variant(const std::string& folder, int number) {
   variant.has_movie = number % 3 == 0;
   variant.reference = fmt::format("{}/reference{}", folder, number);
   variant.options =
-      fmt::format("--set shot.frames=[1,{}] --set environment.zenith=[0.6,{},0.9]", kFrames, 0.2 + number * 0.02);
+      fmt::format("--set shot.frames=[1,{}] --set environment.zenith=[0.6,{},0.9]", kKillFrames, 0.2 + number * 0.02);
   if (number % 3 == 1) variant.options += fmt::format(" --set body.ball.pull[0].stiffness={}", 400 + 10 * number);
   if (variant.has_movie) variant.options += " --set output.movie=true";
   const std::string cache = variant.reference + "_cache", count = variant.reference + "_count";
@@ -46,16 +47,16 @@ Variant make_variant(const std::string& folder, int number) {
                                                  variant.reference, cache, variant.options),
                                      {{"ROOT", variant.reference + ":" + cache}, {"COUNT_FILE", count}});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  variant.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  variant.seconds = seconds_since(start);
   variant.calls = read_counts(count).calls;
   variant.pictures = pictures_in(variant.reference);
-  EXPECT_EQ(variant.pictures.size(), kFrames);
+  EXPECT_EQ(variant.pictures.size(), kKillFrames);
   return variant;
 }
 
 /// Has said that the first frame is done. From then on nothing of another variant may be left in the frame range.
 bool has_shown_progress(const std::string& err) {
-  return std::regex_search(err, std::regex(fmt::format("\\b[0-9]+/{}\\b", kFrames)));
+  return std::regex_search(err, std::regex(fmt::format("\\b[0-9]+/{}\\b", kKillFrames)));
 }
 
 class Kill : public ::testing::Test {
@@ -120,7 +121,8 @@ class Kill : public ::testing::Test {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_TRUE(lines_with(outcome.err, "damaged").empty()) << outcome.err;
     const auto report = nlohmann::json::parse(outcome.out);
-    EXPECT_LE(report["pictures"]["traced"].get<int>(), kFrames - survivors) << survivors << " pictures were finished";
+    EXPECT_LE(report["pictures"]["traced"].get<int>(), kKillFrames - survivors)
+        << survivors << " pictures were finished";
     EXPECT_TRUE(pictures_in(output_) == variant.pictures);
   }
 

@@ -9,19 +9,20 @@ namespace {
 
 using namespace softreel::testing;
 
-constexpr const char* kFrames = "--set shot.frames=[1,8]";
+constexpr const char* kReadOnlyFrames = "--set shot.frames=[1,8]";
 
 class ReadOnly : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = shot_folder("read_only");
-    render_in_peace(folder_, folder_ + "/reference", fmt::format("--cache {}/reference_cache {}", folder_, kFrames));
+    render_in_peace(folder_, folder_ + "/reference",
+                    fmt::format("--cache {}/reference_cache {}", folder_, kReadOnlyFrames));
   }
 
   Outcome run_in(const std::string& read_only, const std::string& command, const std::string& output,
                  const std::string& more = "") const {
     return run_abused(fmt::format("{0} {1}/shot.toml --output {1}/{2} --cache {1}/cache {3} {4}", command, folder_,
-                                  output, kFrames, more),
+                                  output, kReadOnlyFrames, more),
                       {{"READ_ONLY", folder_ + "/" + read_only}});
   }
 
@@ -49,8 +50,9 @@ TEST_F(ReadOnly, OutputFolderIsNamedBeforeAnythingIsTraced) {
 }
 
 TEST_F(ReadOnly, CacheIsUsedAsFarAsItGoes) {
-  const auto simulated = render_in_peace(folder_, folder_ + "/first",
-                                         fmt::format("--cache {}/cache {} --frames 1-5", folder_, kFrames), "simulate");
+  const auto simulated =
+      render_in_peace(folder_, folder_ + "/first",
+                      fmt::format("--cache {}/cache {} --frames 1-5", folder_, kReadOnlyFrames), "simulate");
   ASSERT_EQ(simulated["simulation"]["computed"], 5);
   const auto stored = files_under(folder_ + "/cache");
   const Outcome outcome = run_in("cache", "render", "out", "--quiet --json");
@@ -69,7 +71,7 @@ TEST_F(ReadOnly, CacheThatCannotBeMadeIsSaidOnce) {
 
 TEST_F(ReadOnly, CacheStopsNoExport) {
   render_in_peace(folder_, folder_ + "/exported",
-                  fmt::format("--cache {}/reference_cache {} --format obj", folder_, kFrames), "export");
+                  fmt::format("--cache {}/reference_cache {} --format obj", folder_, kReadOnlyFrames), "export");
   expect_one_warning_of_the_cache(run_in("cache", "export", "out", "--format obj --quiet"));
   expect_equal_final_files(folder_ + "/exported", folder_ + "/out");
 }
