@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "core/base/number_table.h"
 
 namespace softreel {
 
@@ -14,22 +15,17 @@ Bounds used_bounds(const SurfaceMesh& mesh) {
 }
 
 std::vector<Index> weld_positions(const std::vector<Vec3>& positions) {
-  std::vector<Index> order(positions.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto at = [&](Index v) -> const Vec3& { return positions[static_cast<std::size_t>(v)]; };
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    const Vec3 &p = at(a), &q = at(b);
-    for (int k = 0; k < 3; ++k) {
-      if (p[k] < q[k]) return true;
-      if (p[k] > q[k]) return false;
-      if (std::isnan(p[k]) != std::isnan(q[k])) return std::isnan(q[k]);  // an order needs a place for NaN: last
-    }
-    return a < b;
-  });
   std::vector<Index> first(positions.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && at(order[i]) == at(order[i - 1]);
-    first[static_cast<std::size_t>(order[i])] = same ? first[static_cast<std::size_t>(order[i - 1])] : order[i];
+  NumberTable table(positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const Vec3& p = positions[v];
+    first[v] = static_cast<Index>(v);
+    if (p != p) continue;  // not a number: like nothing else
+    const Index known = table.find(position_hash(p), [&](Index u) { return positions[at(u)] == p; });
+    if (known >= 0)
+      first[v] = known;
+    else
+      table.insert(first[v], [&](Index u) { return position_hash(positions[at(u)]); });
   }
   return first;
 }

@@ -7,7 +7,7 @@
 #include "core/base/check.h"
 #include "core/mesh/disjoint_sets.h"
 #include "core/tetmesh/cell_parts.h"
-#include "core/tetmesh/number_table.h"
+#include "core/base/number_table.h"
 
 namespace softreel {
 namespace {

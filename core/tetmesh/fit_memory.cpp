@@ -1,25 +1,17 @@
 #include "core/tetmesh/fit_memory.h"
 
-#include <bit>
-
 namespace softreel {
 namespace {
 
-std::uint64_t position_key(const Vec3& p) {
-  std::uint64_t key = 0;
-  for (int k = 0; k < 3; ++k) key = (key ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9e3779b97f4a7c15ULL;
-  return key;
-}
-
 /// The same whatever the order of the corners.
 std::uint64_t face_key(const std::array<Vec3, 3>& corners) {
-  return position_key(corners[0]) + position_key(corners[1]) + position_key(corners[2]);
+  return position_hash(corners[0]) + position_hash(corners[1]) + position_hash(corners[2]);
 }
 
 }  // namespace
 
 Index FitMemory::find_step(const Vec3& before) const {
-  return table_.find(position_key(before),
+  return table_.find(position_hash(before),
                      [&](Index number) { return steps_[static_cast<std::size_t>(number)][0] == before; });
 }
 
@@ -27,7 +19,7 @@ void FitMemory::add(const Vec3& before, const Vec3& after) {
   if (find_step(before) >= 0) return;
   steps_.push_back({before, after});
   table_.insert(static_cast<Index>(steps_.size() - 1),
-                [&](Index number) { return position_key(steps_[static_cast<std::size_t>(number)][0]); });
+                [&](Index number) { return position_hash(steps_[static_cast<std::size_t>(number)][0]); });
 }
 
 void FitMemory::set_sample_faces(const std::vector<std::array<Vec3, 3>>& faces,

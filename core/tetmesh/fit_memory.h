@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/tetmesh/key_index.h"
-#include "core/tetmesh/number_table.h"
+#include "core/base/number_table.h"
 
 namespace softreel {
 

@@ -7,7 +7,7 @@
 
 #include "core/base/types.h"
 #include "core/tetmesh/bcc_lattice.h"
-#include "core/tetmesh/number_table.h"
+#include "core/base/number_table.h"
 
 namespace softreel {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/tetmesh/lattice_nodes.h"
-#include "core/tetmesh/number_table.h"
+#include "core/base/number_table.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/mesh/mesh_topology.h"
 #include "core/mesh/surface_mesh.h"
-#include "core/tetmesh/key_index.h"
 
 namespace softreel {
 namespace {
@@ -81,18 +81,15 @@ double WindingNumber::operator()(const Vec3& p) const {
 
 bool has_integer_windings(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
   const std::vector<Index> weld = weld_positions(positions);
-  KeyIndex edges;
-  std::vector<std::int32_t> balance;
-  for (const Triangle& triangle : triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto a = static_cast<std::uint64_t>(weld[static_cast<std::size_t>(triangle[k])]);
-      const auto b = static_cast<std::uint64_t>(weld[static_cast<std::size_t>(triangle[(k + 1) % 3])]);
-      if (a == b) continue;
-      const auto [edge, is_new] = edges.insert(std::min(a, b) << 32 | std::max(a, b));
-      if (is_new) balance.push_back(0);
-      balance[static_cast<std::size_t>(edge)] += a < b ? 1 : -1;
-    }
-  return std::all_of(balance.begin(), balance.end(), [](std::int32_t b) { return b == 0; });
+  std::vector<Triangle> welded = triangles;
+  for (Triangle& triangle : welded)
+    for (Index& v : triangle) v = weld[at(v)];
+  bool all_even = true;
+  for_each_edge(sorted_half_edges(welded), [&](std::span<const HalfEdge> sides) {
+    const auto forward = std::count_if(sides.begin(), sides.end(), [](const HalfEdge& side) { return side.forward; });
+    all_even = all_even && 2 * static_cast<std::size_t>(forward) == sides.size();
+  });
+  return all_even;
 }
 
 }  // namespace softreel

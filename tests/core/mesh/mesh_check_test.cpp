@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/mesh/mesh_files.h"
+#include "tests/support/random.h"
 
 namespace softreel {
 namespace {
@@ -103,6 +104,18 @@ TEST(CheckMesh, SaysThatAllFacesPointInwardFarFromTheOrigin) {
   EXPECT_NEAR(facts.signed_volume, -2, 1e-9);
   EXPECT_EQ(facts.pieces, 2);
   EXPECT_TRUE(says(facts, "all faces point inward"));
+}
+
+TEST(WeldPositions, FindsTheFirstOfEqualPoints) {
+  test_support::Random random(11);
+  // Few places for many points; whole numbers leave most bits of a key at 0.
+  for (const double step : {1.0, 1.0 / 3, 1e-9}) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 600; ++i) points.push_back(step * (6 * test_support::random_vector(random)).array().round());
+    const std::vector<Index> weld = weld_positions(points);
+    for (std::size_t v = 0; v < points.size(); ++v)
+      ASSERT_EQ(weld[v], std::find(points.begin(), points.end(), points[v]) - points.begin());
+  }
 }
 
 TEST(WeldPositions, KeepsPointsThatAreNotNumbersApart) {

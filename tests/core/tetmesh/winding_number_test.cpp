@@ -40,6 +40,31 @@ TEST(WindingNumber, IsAHalfInTheMiddleOfAHemispheresOpening) {
   EXPECT_LT(winding(Vec3(0, 0.3, 0)), 0.4);
 }
 
+TEST(HasIntegerWindings, CountsEveryEdgeBothWays) {
+  SurfaceMesh ring = test::make_torus(1, 0.4, 12, 8, Vec3::Zero());
+  const auto says = [&] { return has_integer_windings(ring.positions, ring.triangles); };
+  EXPECT_TRUE(says());
+  const std::vector<Triangle> closed = ring.triangles;
+  ring.triangles[5] = {closed[5][1], closed[5][0], closed[5][2]};
+  EXPECT_FALSE(says()) << "a triangle is turned over";
+  ring.triangles = closed;
+  ring.triangles.push_back(closed[5]);
+  EXPECT_FALSE(says()) << "a triangle is there twice";
+  ring.triangles.push_back({closed[5][1], closed[5][0], closed[5][2]});
+  EXPECT_TRUE(says()) << "and once more, turned over";
+  ring.triangles.push_back({closed[5][0], closed[5][0], closed[5][2]});
+  EXPECT_TRUE(says()) << "a triangle that is a line has each edge both ways";
+  for (Triangle& triangle : ring.triangles)  // corners of their own
+    for (Index& v : triangle) {
+      ring.positions.push_back(ring.positions[at(v)]);
+      v = static_cast<Index>(ring.positions.size()) - 1;
+    }
+  EXPECT_TRUE(says()) << "corners at one place are one";
+  ring.triangles.pop_back();
+  ring.triangles.erase(ring.triangles.begin());
+  EXPECT_FALSE(says()) << "a triangle is missing";
+}
+
 TEST(RowCrossings, AgreeWithWindingNumbers) {
   // Overlapping and nested shells, one inside out; corners and edges lie exactly on rows of the lattice.
   SurfaceMesh surface = test::make_box(Vec3::Ones(), 2, Vec3::Zero());

@@ -1,6 +1,7 @@
 /// A hash table of numbers whose keys are kept elsewhere: four bytes a slot.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -8,10 +9,18 @@
 
 namespace softreel {
 
+/// Of a point, for exactly equal ones the same; 0 and -0 are equal.
+inline std::uint64_t position_hash(const Vec3& p) {
+  std::uint64_t hash = 0;
+  for (int k = 0; k < 3; ++k) hash = (hash ^ std::bit_cast<std::uint64_t>(p[k] + 0.0)) * 0x9e3779b97f4a7c15ULL;
+  return hash;
+}
+
 /// Open addressing, at most half full. Finding is safe from many threads while nobody inserts.
 class NumberTable {
  public:
-  NumberTable() : slots_(16, -1) {}
+  /// With room for so many numbers; it grows when there are more.
+  explicit NumberTable(std::size_t numbers = 0) : slots_(std::bit_ceil(2 * numbers + 16), -1) {}
 
   /// The number with this hash value for which is_wanted(number) holds, -1 if there is none.
   template <typename IsWanted>
