@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/number_table.h"
 #include "core/mesh/disjoint_sets.h"
 #include "core/tetmesh/cell_parts.h"
-#include "core/base/number_table.h"
 
 namespace softreel {
 namespace {

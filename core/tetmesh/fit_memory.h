@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/tetmesh/key_index.h"
 #include "core/base/number_table.h"
+#include "core/tetmesh/key_index.h"
 
 namespace softreel {
 

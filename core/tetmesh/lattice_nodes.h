@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/number_table.h"
 #include "core/base/types.h"
 #include "core/tetmesh/bcc_lattice.h"
-#include "core/base/number_table.h"
 
 namespace softreel {
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/tetmesh/lattice_nodes.h"
 #include "core/base/number_table.h"
+#include "core/tetmesh/lattice_nodes.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
