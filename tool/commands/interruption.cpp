@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "tool/stages/file_lock.h"
 #include "tool/stages/process.h"
 
 namespace softreel {
@@ -43,6 +44,7 @@ void watch() {
   // Still here: time is up, or a second signal came.
   std::fputs("\nsoftreel: Interrupted; what is finished is kept. Run the same command again to go on.\n", stderr);
   std::fflush(stderr);
+  remove_lock_files_at_once();
   ::_exit(130);
 }
 

@@ -2,6 +2,8 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <mutex>
+#include <set>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -10,6 +12,17 @@
 
 namespace softreel {
 namespace {
+
+/// The files that go with locks that this process holds.
+struct FilesToRemove {
+  std::mutex mutex;
+  std::set<std::string> paths;
+};
+
+FilesToRemove& files_to_remove() {
+  static auto& files = *new FilesToRemove;  // for as long as any thread runs
+  return files;
+}
 
 int open_lock_file(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -73,13 +86,25 @@ FileLock FileLock::take(const std::string& path, Sharing sharing) {
 
 FileLock::~FileLock() {
   if (descriptor_ < 0) return;
-  if (!removed_.empty()) ::unlink(removed_.c_str());
+  if (!removed_.empty()) {
+    const std::lock_guard lock(files_to_remove().mutex);
+    ::unlink(removed_.c_str());
+    files_to_remove().paths.erase(removed_);
+  }
   ::close(descriptor_);
 }
 
 FileLock&& FileLock::remove_at_end(std::string path) && {
+  if (descriptor_ < 0) return std::move(*this);
   removed_ = std::move(path);
+  const std::lock_guard lock(files_to_remove().mutex);
+  files_to_remove().paths.insert(removed_);
   return std::move(*this);
+}
+
+void remove_lock_files_at_once() {
+  files_to_remove().mutex.lock();
+  for (const std::string& path : files_to_remove().paths) ::unlink(path.c_str());
 }
 
 }  // namespace softreel

@@ -7,7 +7,7 @@
 
 namespace softreel {
 
-/// A lock on a file of its own. Released at destruction and when the process dies; never left behind.
+/// A lock on a file of its own. Released at destruction and when the process dies.
 class FileLock {
  public:
   enum class Sharing { Shared, Exclusive };
@@ -38,6 +38,10 @@ class FileLock {
   int descriptor_;  ///< -1: a formality
   std::string removed_;
 };
+
+/// Removes the files that go with their locks, for a process that is about to end without destroying them. None is
+/// removed or taken away after this: whoever destroys such a lock waits for the end.
+void remove_lock_files_at_once();
 
 /// This machine's name, for files that tell whose they are.
 std::string host_name();

@@ -1,4 +1,5 @@
 /// Ctrl-C in every phase: the program is soon gone, with status 130, and nothing of it stays but finished files.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -160,6 +161,30 @@ TEST_P(Interrupt, ByTerminationEndsSoonAndLeavesNothing) {
   expect_gone(SIGTERM, milliseconds(100));
 }
 
+/// A phase that holds the lock on a result while it lasts.
+using InterruptTwice = Interrupt;
+
+TEST_P(InterruptTwice, EndsAtOnceAndLeavesNoLock) {
+  RunningProgram program("interrupt_twice",
+                         words_of(fmt::format("softreel {} {}/shot.toml --output {} {}", GetParam().command, folder_,
+                                              output(), GetParam().options)));
+  const auto has_lock = [&] {
+    if (!exists(output())) return false;
+    const std::vector<std::string> names = files_under(output());
+    return std::any_of(names.begin(), names.end(),
+                       [](const std::string& name) { return name.find("/locks/") != std::string::npos; });
+  };
+  wait_until(program, has_lock);
+  ASSERT_TRUE(has_lock()) << "the check can fail";
+  program.signal(SIGINT);
+  pause(milliseconds(20));
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait().status, 130);
+  EXPECT_FALSE(has_lock());
+}
+
+INSTANTIATE_TEST_SUITE_P(Phases, InterruptTwice, ::testing::Values(kPhases[0], kPhases[1]),
+                         [](const auto& phase) { return std::string(phase.param.name); });
 INSTANTIATE_TEST_SUITE_P(Phases, Interrupt, ::testing::ValuesIn(kPhases),
                          [](const auto& phase) { return std::string(phase.param.name); });
 
