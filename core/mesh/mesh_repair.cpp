@@ -45,7 +45,7 @@ void remove_not_finite(SurfaceMesh& mesh, std::vector<std::string>& lines) {
 }
 
 void remove_collapsed(SurfaceMesh& mesh, const std::vector<Index>& weld, std::vector<std::string>& lines) {
-  const std::vector<Triangle> welded = welded_triangles(mesh, weld);
+  const std::vector<Triangle> welded = welded_triangles(mesh.triangles, weld);
   std::vector<char> kept(welded.size());
   for (std::size_t t = 0; t < welded.size(); ++t) kept[t] = is_collapsed(welded[t]) ? 0 : 1;
   if (const std::int64_t removed = keep_triangles(mesh, kept); removed > 0)
@@ -117,7 +117,7 @@ std::vector<char> find_walls(const std::vector<Twins>& twins, const std::vector<
 }
 
 void remove_duplicates(SurfaceMesh& mesh, const std::vector<Index>& weld, std::vector<std::string>& lines) {
-  const std::vector<Triangle> welded = welded_triangles(mesh, weld);
+  const std::vector<Triangle> welded = welded_triangles(mesh.triangles, weld);
   const std::vector<Twins> twins = find_twins(welded);
   if (twins.size() == welded.size()) return;
   const std::vector<char> is_wall = find_walls(twins, welded);
@@ -256,9 +256,9 @@ std::vector<std::string> repair_mesh(SurfaceMesh& mesh) {
   }
   remove_collapsed(mesh, weld, lines);
   remove_duplicates(mesh, weld, lines);
-  const std::vector<HalfEdge> given = sorted_half_edges(welded_triangles(mesh, weld));
+  const std::vector<HalfEdge> given = sorted_half_edges(welded_triangles(mesh.triangles, weld));
   const std::vector<Index> piece = make_consistent(mesh, given, lines);
-  turn_outward(mesh, sorted_half_edges(welded_triangles(mesh, weld)), piece, lines);
+  turn_outward(mesh, sorted_half_edges(welded_triangles(mesh.triangles, weld)), piece, lines);
   return lines;
 }
 

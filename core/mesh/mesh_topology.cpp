@@ -7,14 +7,18 @@
 namespace softreel {
 
 std::vector<Triangle> welded_triangles(const SurfaceMesh& mesh) {
-  return welded_triangles(mesh, weld_positions(mesh.positions));
+  return welded_triangles(mesh.triangles, weld_positions(mesh.positions));
 }
 
-std::vector<Triangle> welded_triangles(const SurfaceMesh& mesh, const std::vector<Index>& weld) {
-  std::vector<Triangle> welded = mesh.triangles;
-  for (Triangle& triangle : welded)
+std::vector<Triangle> welded_triangles(std::vector<Triangle> triangles, const std::vector<Index>& weld) {
+  for (Triangle& triangle : triangles)
     for (Index& v : triangle) v = weld[static_cast<std::size_t>(v)];
-  return welded;
+  return triangles;
+}
+
+bool is_balanced(std::span<const HalfEdge> edge) {
+  const auto forward = std::count_if(edge.begin(), edge.end(), [](const HalfEdge& side) { return side.forward; });
+  return 2 * static_cast<std::size_t>(forward) == edge.size();
 }
 
 bool is_collapsed(const Triangle& welded) {

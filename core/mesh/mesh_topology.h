@@ -21,7 +21,7 @@ struct HalfEdge {
 /// The triangles with each vertex replaced by the first one of its position. Vertices that are not finite stay apart.
 std::vector<Triangle> welded_triangles(const SurfaceMesh& mesh);
 /// The same with the result of weld_positions at hand.
-std::vector<Triangle> welded_triangles(const SurfaceMesh& mesh, const std::vector<Index>& weld);
+std::vector<Triangle> welded_triangles(std::vector<Triangle> triangles, const std::vector<Index>& weld);
 
 /// True if two corners are the same vertex, so that the triangle is a line or a point.
 bool is_collapsed(const Triangle& welded);
@@ -38,6 +38,9 @@ void for_each_edge(std::span<const HalfEdge> half_edges, const Body& body) {
     body(half_edges.subspan(begin, end - begin));
   }
 }
+
+/// Whether the triangles of an edge run along it as often in one direction as in the other; not at rims.
+bool is_balanced(std::span<const HalfEdge> edge);
 
 /// Six times the signed volume under triangle (a, b, c) as seen from the origin.
 inline double signed_volume6(const Vec3& a, const Vec3& b, const Vec3& c) {

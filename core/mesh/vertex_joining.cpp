@@ -21,7 +21,7 @@ constexpr double kShareOfEdge = 0.25;
 std::vector<double> rim_reaches(const SurfaceMesh& mesh, const std::vector<Index>& weld) {
   std::vector<double> reaches(mesh.positions.size(), 0.0);
   const double most = kReach * used_bounds(mesh).diagonal();
-  const std::vector<HalfEdge> sides = sorted_half_edges(welded_triangles(mesh, weld));
+  const std::vector<HalfEdge> sides = sorted_half_edges(welded_triangles(mesh.triangles, weld));
   for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
     if (edge.size() == 1)
       for (const Index v : {edge[0].low, edge[0].high}) reaches[static_cast<std::size_t>(v)] = most;

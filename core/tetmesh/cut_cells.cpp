@@ -22,8 +22,7 @@ std::size_t side_of(const Triangle& welded, const HalfEdge& half) {
 /// Numbers the sides that meet at one edge.
 void join_edge(LatticeSurface& surface, const std::vector<Triangle>& welded, std::span<const HalfEdge> edge,
                Index& joints) {
-  const auto forward = std::count_if(edge.begin(), edge.end(), [](const HalfEdge& half) { return half.forward; });
-  const bool rim = 2 * static_cast<std::size_t>(forward) != edge.size();
+  const bool rim = !is_balanced(edge);
   const bool plain = edge.size() == 2 && !rim;
   std::vector<std::pair<Index, Index>> ends;
   const Index first = joints;

@@ -39,8 +39,7 @@ std::vector<Index> find_rims(const std::vector<Triangle>& welded) {
   std::vector<Index> rims;
   const std::vector<HalfEdge> sides = sorted_half_edges(welded);
   for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
-    const auto forward = std::count_if(edge.begin(), edge.end(), [](const HalfEdge& side) { return side.forward; });
-    if (2 * static_cast<std::size_t>(forward) != edge.size()) rims.insert(rims.end(), {edge[0].low, edge[0].high});
+    if (!is_balanced(edge)) rims.insert(rims.end(), {edge[0].low, edge[0].high});
   });
   std::sort(rims.begin(), rims.end());
   rims.erase(std::unique(rims.begin(), rims.end()), rims.end());

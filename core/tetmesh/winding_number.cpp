@@ -80,16 +80,11 @@ double WindingNumber::operator()(const Vec3& p) const {
 }
 
 bool has_integer_windings(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
-  const std::vector<Index> weld = weld_positions(positions);
-  std::vector<Triangle> welded = triangles;
-  for (Triangle& triangle : welded)
-    for (Index& v : triangle) v = weld[at(v)];
-  bool all_even = true;
-  for_each_edge(sorted_half_edges(welded), [&](std::span<const HalfEdge> sides) {
-    const auto forward = std::count_if(sides.begin(), sides.end(), [](const HalfEdge& side) { return side.forward; });
-    all_even = all_even && 2 * static_cast<std::size_t>(forward) == sides.size();
-  });
-  return all_even;
+  const std::vector<Triangle> welded = welded_triangles(triangles, weld_positions(positions));
+  bool all_balanced = true;
+  for_each_edge(sorted_half_edges(welded),
+                [&](std::span<const HalfEdge> edge) { all_balanced = all_balanced && is_balanced(edge); });
+  return all_balanced;
 }
 
 }  // namespace softreel

@@ -1,6 +1,7 @@
 #include "tool/stages/file_lock.h"
 
 #include <cerrno>
+#include <chrono>
 #include <filesystem>
 #include <mutex>
 #include <set>
@@ -15,7 +16,7 @@ namespace {
 
 /// The files that go with locks that this process holds.
 struct FilesToRemove {
-  std::mutex mutex;
+  std::timed_mutex mutex;
   std::set<std::string> paths;
 };
 
@@ -103,7 +104,8 @@ FileLock&& FileLock::remove_at_end(std::string path) && {
 }
 
 void remove_lock_files_at_once() {
-  files_to_remove().mutex.lock();
+  // Whoever holds the mutex removes a file; on a file system that hangs the end is not to wait for that.
+  if (!files_to_remove().mutex.try_lock_for(std::chrono::milliseconds(100))) return;
   for (const std::string& path : files_to_remove().paths) ::unlink(path.c_str());
 }
 

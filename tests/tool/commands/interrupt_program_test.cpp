@@ -161,7 +161,7 @@ TEST_P(Interrupt, ByTerminationEndsSoonAndLeavesNothing) {
   expect_gone(SIGTERM, milliseconds(100));
 }
 
-/// A phase that holds the lock on a result while it lasts.
+/// Reading a large file holds the lock on its result, and no signal is looked at meanwhile.
 using InterruptTwice = Interrupt;
 
 TEST_P(InterruptTwice, EndsAtOnceAndLeavesNoLock) {
@@ -178,12 +178,13 @@ TEST_P(InterruptTwice, EndsAtOnceAndLeavesNoLock) {
   ASSERT_TRUE(has_lock()) << "the check can fail";
   program.signal(SIGINT);
   pause(milliseconds(20));
+  EXPECT_FALSE(program.has_ended()) << "the second signal came too late to test anything";
   program.signal(SIGINT);
   EXPECT_EQ(program.wait().status, 130);
   EXPECT_FALSE(has_lock());
 }
 
-INSTANTIATE_TEST_SUITE_P(Phases, InterruptTwice, ::testing::Values(kPhases[0], kPhases[1]),
+INSTANTIATE_TEST_SUITE_P(Phases, InterruptTwice, ::testing::Values(kPhases[0]),
                          [](const auto& phase) { return std::string(phase.param.name); });
 INSTANTIATE_TEST_SUITE_P(Phases, Interrupt, ::testing::ValuesIn(kPhases),
                          [](const auto& phase) { return std::string(phase.param.name); });
