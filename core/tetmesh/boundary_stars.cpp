@@ -1,7 +1,6 @@
 #include "core/tetmesh/boundary_stars.h"
 
 #include <algorithm>
-#include <ranges>
 
 #include "core/tetmesh/boundary_mending.h"
 
@@ -71,8 +70,10 @@ CosineRange BoundaryStars::cosines(const TetMesh& mesh, std::size_t b) const {
 std::vector<std::array<Vec3, 3>> BoundaryStars::face_corners(const TetMesh& mesh) const {
   std::vector<std::array<Vec3, 3>> corners;
   corners.reserve(faces.size());
-  for (const auto& [i, j, k] : faces | std::views::transform(&BoundaryFace::nodes))
+  for (const BoundaryFace& face : faces) {
+    const auto [i, j, k] = face.nodes;
     corners.push_back({mesh.nodes[at(i)], mesh.nodes[at(j)], mesh.nodes[at(k)]});
+  }
   return corners;
 }
 

@@ -107,11 +107,13 @@ class Walk {
     return false;
   }
 
+  /// By what a channel carries times the fourth root of its ratio: with the ratio itself, channels that are unlikely
+  /// now and likely later get weights of a thousand; without it, walks that carry next to nothing take all their steps.
   bool survives(int step) {
-    const float carried = scattered_.cwiseProduct(ratio_).maxCoeff();
-    if (!(carried > 0)) return false;
+    if (!(scattered_.cwiseProduct(ratio_).maxCoeff() > 0)) return false;
     if (step < kRouletteStart) return true;
-    const float chance = std::min(1.0f, carried / ratio_.maxCoeff());
+    const Vec3f likely = (ratio_ / ratio_.maxCoeff()).cwiseSqrt().cwiseSqrt();
+    const float chance = std::min(1.0f, scattered_.cwiseProduct(likely).maxCoeff());
     if (numbers_.next() >= chance) return false;
     scattered_ /= chance;
     return true;

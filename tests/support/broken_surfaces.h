@@ -1,6 +1,7 @@
 /// Surfaces as they come out of modellers and scanners: each has one kind of damage, and a volume that is still known.
 #pragma once
 
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -11,9 +12,9 @@ namespace softreel::test {
 
 struct BrokenSurface {
   std::string name;
-  SurfaceMesh mesh;
-  double edge = 0;       ///< to fill it with, m
-  double thickness = 0;  ///< of open sheets, m
+  std::function<SurfaceMesh()> mesh;  ///< makes it: programs of tests list all names whenever they start
+  double edge = 0;                    ///< to fill it with, m
+  double thickness = 0;               ///< of open sheets, m
 
   // What must come out: a body ...
   double volume = 0;     ///< m^3

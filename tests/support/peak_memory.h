@@ -7,6 +7,15 @@
 
 namespace softreel::test {
 
+/// Under the address sanitizer, whose own heap takes more and keeps what was given back.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kIsSanitized = true;
+#elif defined(__has_feature)  // clang's way to say it
+constexpr bool kIsSanitized = __has_feature(address_sanitizer);
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
 /// Lets the peak begin again from what is held now; needs write access to /proc/self, which a process has.
 inline void reset_peak_memory() {
   std::ofstream("/proc/self/clear_refs") << "5";

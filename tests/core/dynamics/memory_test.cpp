@@ -4,16 +4,10 @@
 
 #include "tests/core/dynamics/dynamics_support.h"
 #include "tests/support/elastic_box.h"
+#include "tests/support/peak_memory.h"
 
 namespace softreel {
 namespace {
-
-/// A sanitizer's own heap hands out more, and does not tell the C library.
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool kHeapTells = false;
-#else
-constexpr bool kHeapTells = true;
-#endif
 
 /// Bytes that the heap has handed out, in small and in mapped pieces.
 double live_bytes() {
@@ -36,7 +30,7 @@ double bytes_a_tet(const TetMesh& mesh, double seconds, double poisson_ratio = 0
 }
 
 TEST(Simulator, TakesAtMostAKilobyteATetrahedronInFloat) {
-  if (!kHeapTells) GTEST_SKIP() << "the heap is a sanitizer's";
+  if (test::kIsSanitized) GTEST_SKIP() << "its own heap does not tell the C library";
   const TetMesh bar = test_support::make_bar(9), cut = testing::kuhn_bar({48, 12, 12}, Vec3(1, 0.25, 0.25));
   const double of_bar = bytes_a_tet(bar, 1.0 / 96), of_cut = bytes_a_tet(cut, 1.0 / 96);
   EXPECT_LT(of_bar, 1024) << "a lattice";
@@ -48,7 +42,7 @@ TEST(Simulator, TakesAtMostAKilobyteATetrahedronInFloat) {
 }
 
 TEST(Simulator, TakesAThirdMoreWhereItStepsInDouble) {
-  if (!kHeapTells) GTEST_SKIP() << "the heap is a sanitizer's";
+  if (test::kIsSanitized) GTEST_SKIP() << "its own heap does not tell the C library";
   // A long step of a stiff, light mesh, which float does not suit.
   const double bytes = bytes_a_tet(test_support::make_bar(9), 1.0 / 8);
   EXPECT_LT(bytes, 1330);

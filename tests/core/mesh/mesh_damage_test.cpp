@@ -55,8 +55,9 @@ TEST(FindDamage, ABoxInsideOutIsTurnedAsAWhole) {
 TEST(FindDamage, CountsWhatCheckMeshCounts) {
   for (const test::BrokenSurface& surface : test::broken_surfaces()) {
     SCOPED_TRACE(surface.name);
-    const MeshFacts facts = check_mesh(surface.mesh);
-    const MeshDamage damage = find_damage(surface.mesh, surface.mesh);
+    const SurfaceMesh mesh = surface.mesh();
+    const MeshFacts facts = check_mesh(mesh);
+    const MeshDamage damage = find_damage(mesh, mesh);
     EXPECT_EQ(static_cast<std::int64_t>(damage.boundary.size()), facts.boundary_edges);
     EXPECT_EQ(static_cast<std::int64_t>(damage.non_manifold.size()), facts.non_manifold_edges);
     EXPECT_EQ(static_cast<std::int64_t>(damage.flipped.size()), facts.flipped_neighbours);

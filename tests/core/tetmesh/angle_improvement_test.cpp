@@ -160,7 +160,7 @@ TEST(ImproveAngles, KeepsThePromiseOnWhatModellersDeliver) {
   for (const test::BrokenSurface& broken : test::broken_surfaces()) {
     if (!broken.refusal.empty()) continue;
     SCOPED_TRACE(broken.name);
-    SurfaceMesh surface = broken.mesh;
+    SurfaceMesh surface = broken.mesh();
     repair_mesh(surface);
     const TetMesh before = fill(surface, {.edge = broken.edge, .thickness = broken.thickness});
     const TetMesh after = fill(surface, {.edge = broken.edge, .thickness = broken.thickness, .optimize = true});

@@ -13,7 +13,7 @@ namespace {
 class BrokenSurfaces : public ::testing::TestWithParam<test::BrokenSurface> {};
 
 TetMesh fill(const test::BrokenSurface& broken, std::vector<std::string>& lines, int threads) {
-  SurfaceMesh mesh = broken.mesh;
+  SurfaceMesh mesh = broken.mesh();
   lines = repair_mesh(mesh);
   const auto collect = [&](const std::string& line) { lines.push_back(line); };
   StageTimes times;

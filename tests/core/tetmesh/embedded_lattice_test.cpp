@@ -221,7 +221,7 @@ bool is_too_thin(const test::BrokenSurface& broken) {
 
 TEST_P(EmbeddedZoo, IsCoveredOrRefused) {
   const test::BrokenSurface& broken = GetParam();
-  SurfaceMesh surface = broken.mesh;
+  SurfaceMesh surface = broken.mesh();
   repair_mesh(surface);
   const TetrahedralizeParams params{.edge = broken.edge, .thickness = broken.thickness};
   const bool thin_only = is_too_thin(broken);

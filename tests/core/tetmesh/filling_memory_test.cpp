@@ -60,9 +60,7 @@ constexpr double kBytesATet = 300, kBytesATriangle = 200;
 class FillingMemory : public ::testing::Test {
  protected:
   void SetUp() override {
-#ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP() << "a sanitizer keeps what was given back";
-#endif
+    if (test::kIsSanitized) GTEST_SKIP() << "a sanitizer keeps what was given back";
   }
 };
 
