@@ -107,8 +107,9 @@ class Walk {
     return false;
   }
 
-  /// By what a channel carries times the fourth root of its ratio: with the ratio itself, channels that are unlikely
-  /// now and likely later get weights of a thousand; without it, walks that carry next to nothing take all their steps.
+  /// A walk goes on with the chance of what a channel carries times the fourth root of its ratio over the largest one.
+  /// With that ratio itself, channels that are unlikely now and likely later get weights of a thousand; without it,
+  /// walks that carry next to nothing take all their steps.
   bool survives(int step) {
     if (!(scattered_.cwiseProduct(ratio_).maxCoeff() > 0)) return false;
     if (step < kRouletteStart) return true;

@@ -20,7 +20,7 @@ SurfaceMesh moebius();
 /// right angles in the origin.
 SurfaceMesh crossed_tube(double radius);
 
-/// Two cubes that touch in a face, in which most of the wall is missing.
+/// Two cubes that share the wall between them.
 SurfaceMesh walled();
 
 /// Two pyramids that meet in one vertex.

@@ -101,6 +101,12 @@ constexpr const char* kInstructionSet =
     "baseline of the compiler";
 #endif
 
+#ifdef __clang__
+constexpr const char* kCompiler = __VERSION__;  // says whose it is
+#else
+constexpr const char* kCompiler = "g++ " __VERSION__;
+#endif
+
 const char* yes_or_no(bool value) {
   return value ? "yes" : "no";
 }
@@ -108,7 +114,7 @@ const char* yes_or_no(bool value) {
 }  // namespace
 
 std::string version_text() {
-  return fmt::format("softreel {} (g++ {}, Eigen {}.{}.{})", SOFTREEL_VERSION, __VERSION__, EIGEN_WORLD_VERSION,
+  return fmt::format("softreel {} ({}, Eigen {}.{}.{})", SOFTREEL_VERSION, kCompiler, EIGEN_WORLD_VERSION,
                      EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
 }
 
@@ -119,7 +125,7 @@ std::string short_version() {
 VersionFacts version_facts() {
   VersionFacts facts;
   facts.version = SOFTREEL_VERSION;
-  facts.compiler = fmt::format("g++ {}", __VERSION__);
+  facts.compiler = kCompiler;
   facts.libraries = libraries();
   facts.parts = {
       module_part("embree", "path tracing", SOFTREEL_BUILT_EMBREE, SOFTREEL_EMBREE_VERSION),
