@@ -122,7 +122,9 @@ TEST(FindRotation, TurnsTheLeastFromTheGuessAtTies) {
     const Quaternion guess = random_rotation(random);
     const Vec3 axis = Vec3::Random().normalized(), rest = Vec3::Random().normalized();
     const Mat3 A = axis * rest.transpose();
-    const Quaternion expected = Quaternion::FromTwoVectors(guess * rest, axis) * guess;
+    const Vec3 from = guess * rest, about = from.cross(axis);
+    const Quaternion turn(1 + from.dot(axis), about.x(), about.y(), about.z());
+    const Quaternion expected = turn.normalized() * guess;
     EXPECT_LT((find_rotation(A, guess).toRotationMatrix() - expected.toRotationMatrix()).norm(), 1e-12);
   }
 }

@@ -1,6 +1,8 @@
 #include "core/elasticity/rotation_rivals.h"
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <set>
 #include <vector>
@@ -59,6 +61,17 @@ TEST(FindQrRotation, FallsBackOnTheGuessWhereTheFaceIsALine) {
   bad[2].x() = std::numeric_limits<double>::quiet_NaN();
   const Quaternion guess = random_rotation(random);
   EXPECT_TRUE(find_qr_rotation(kRestTet, bad, guess).isApprox(guess, 0));
+}
+
+TEST(FindQrRotation, TurnsALineThatPointsTheOtherWayByHalfATurn) {
+  for (const double off : {0.0, 1e-300, 1e-12, 1e-9, 1e-7, 1e-4}) {
+    const Vec3 axis = Vec3(-1, off, 0).normalized();
+    const TetNodes line{Vec3::Zero(), axis, 2 * axis, -axis};
+    const Quaternion found = find_qr_rotation(kRestTet, line, Quaternion::Identity());
+    EXPECT_NEAR(found.norm(), 1, 1e-14);
+    EXPECT_LT((found * Vec3(1, 0, 0) - axis).norm(), 1e-7) << off;
+    EXPECT_NEAR(found.angularDistance(Quaternion::Identity()), std::numbers::pi, 2 * off + 1e-7);
+  }
 }
 
 TEST(FindQrRotation, IsTheSameAtAnyScale) {
