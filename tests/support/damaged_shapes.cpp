@@ -106,22 +106,11 @@ SurfaceMesh moebius() {
 }
 
 SurfaceMesh crossed_tube(double radius) {
-  constexpr Index around = 160, across = 24;
-  SurfaceMesh mesh;
-  for (Index i = 0; i < around; ++i)
-    for (Index j = 0; j < across; ++j) {
-      const double a = 2 * std::numbers::pi * i / around, b = 2 * std::numbers::pi * j / across;
-      const Vec3 center(std::sin(a), 0, std::sin(a) * std::cos(a)), along(std::cos(a), 0, std::cos(2 * a));
-      const Vec3 side = along.cross(Vec3::UnitY()).normalized();
-      mesh.positions.push_back(center + radius * (std::cos(b) * side + std::sin(b) * Vec3::UnitY()));
-    }
-  const auto vertex = [&](Index i, Index j) { return (i % around) * across + j % across; };
-  for (Index i = 0; i < around; ++i)
-    for (Index j = 0; j < across; ++j) {
-      mesh.triangles.push_back({vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1)});
-      mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j)});
-    }
-  return mesh;
+  return make_ring(160, 24, [&](double a, double b) -> Vec3 {
+    const Vec3 center(std::sin(a), 0, std::sin(a) * std::cos(a)), along(std::cos(a), 0, std::cos(2 * a));
+    const Vec3 side = along.cross(Vec3::UnitY()).normalized();
+    return center + radius * (std::cos(b) * side + std::sin(b) * Vec3::UnitY());
+  });
 }
 
 SurfaceMesh with_t_junctions(SurfaceMesh mesh) {

@@ -8,15 +8,14 @@
 
 namespace softreel::test {
 
-/// A grid of quads over [0, 1)^2, closed in both directions: a torus round the y axis.
-inline SurfaceMesh make_torus(double major, double minor, Index around, Index across, const Vec3& center) {
+/// A grid of quads over two angles, closed in both directions: a tube that comes back to where it began. point(a, b):
+/// on it, a along and b round the tube.
+template <typename Point>
+SurfaceMesh make_ring(Index around, Index across, const Point& point) {
   SurfaceMesh mesh;
   const double turn = 2.0 * std::numbers::pi;
   for (Index i = 0; i < around; ++i)
-    for (Index j = 0; j < across; ++j) {
-      const double a = turn * i / around, b = turn * j / across, r = major + minor * std::cos(b);
-      mesh.positions.push_back(center + Vec3(r * std::cos(a), minor * std::sin(b), r * std::sin(a)));
-    }
+    for (Index j = 0; j < across; ++j) mesh.positions.push_back(point(turn * i / around, turn * j / across));
   const auto vertex = [&](Index i, Index j) { return (i % around) * across + j % across; };
   for (Index i = 0; i < around; ++i)
     for (Index j = 0; j < across; ++j) {
@@ -24,6 +23,14 @@ inline SurfaceMesh make_torus(double major, double minor, Index around, Index ac
       mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j)});
     }
   return mesh;
+}
+
+/// A torus round the y axis.
+inline SurfaceMesh make_torus(double major, double minor, Index around, Index across, const Vec3& center) {
+  return make_ring(around, across, [&](double a, double b) -> Vec3 {
+    const double r = major + minor * std::cos(b);
+    return center + Vec3(r * std::cos(a), minor * std::sin(b), r * std::sin(a));
+  });
 }
 
 /// Calls visit(a, b, c) for the triangles of a grid of cells * cells squares, whose points are numbered row by row.

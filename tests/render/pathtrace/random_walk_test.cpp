@@ -82,7 +82,7 @@ TEST(RandomWalk, HalfSpaceReturnsTheColourAskedFor) {
       const SlabLight light = light_of(Slab(kDeep), medium, 50000);
       for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(light.reflected[c], color[c], 0.01 + 3 * light.error[c]) << "g " << anisotropy << ", channel " << c;
-        EXPECT_LT(light.error[c], 0.008) << "of weights that vary by 3 at most, squared";
+        EXPECT_LT(light.error[c], 0.008) << "the variance of one walk's weight is above 3";
       }
     }
 }
