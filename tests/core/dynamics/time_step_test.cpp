@@ -5,13 +5,13 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/dynamics/simulator.h"
 #include "core/elasticity/mass.h"
 #include "tests/core/dynamics/dynamics_support.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/elastic_box.h"
 
 namespace softreel {
@@ -192,9 +192,9 @@ Modes find_modes(const BodyModel& model) {
   const NodalMasses masses = lump_masses(model.mesh, model.materials);
   for (Eigen::Index i = 0; i < K.rows(); ++i) modes.masses[i] = masses.mass[static_cast<std::size_t>(i / 3)];
   const Eigen::MatrixXd M = modes.masses.asDiagonal();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, M);
-  modes.frequencies = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
-  modes.shapes = solver.eigenvectors();
+  const test_support::EigenPairs pairs = test_support::generalized_eigenpairs(K, M);
+  modes.frequencies = pairs.values.cwiseMax(0).cwiseSqrt();
+  modes.shapes = pairs.vectors;
   return modes;
 }
 

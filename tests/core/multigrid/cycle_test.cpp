@@ -1,13 +1,12 @@
 // Bottom solver and cycle: what conjugate gradients need of a preconditioner.
 #include <cstdlib>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "core/multigrid/gauss_seidel.h"
 #include "core/multigrid/v_cycle.h"
 #include "tests/core/multigrid/finest_level.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/elastic_box.h"
 
 namespace softreel {
@@ -120,7 +119,7 @@ TEST(Cycle, IsSymmetricAndPositiveAndLeavesPinsAtZero) {
     EXPECT_LE((M - M.transpose()).norm(), 1e-12 * M.norm());
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
       EXPECT_EQ(M.middleRows<3>(3 * static_cast<Index>(i)).norm() == 0, system.pinned[i] != 0);
-    const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M).eigenvalues();
+    const Eigen::VectorXd eigenvalues = test_support::eigenvalues(M);
     EXPECT_GE(eigenvalues.minCoeff(), -1e-12 * eigenvalues.maxCoeff());
   }
 }

@@ -1,12 +1,12 @@
 // All smoothers behind one interface, and the spectrum that the polynomial one needs.
 #include "core/multigrid/smoother.h"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "core/multigrid/chebyshev.h"
 #include "core/multigrid/gauss_seidel.h"
 #include "tests/core/multigrid/finest_level.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/elastic_box.h"
 
 namespace softreel {
@@ -146,7 +146,7 @@ double largest_eigenvalue(const Finest& finest) {
   const Index n = finest.matrix.pattern.rows();
   Eigen::MatrixXd A = test_support::dense(finest.system.matrix), D = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   for (Index i = 0; i < n; ++i) D.block<3, 3>(3 * i, 3 * i) = A.block<3, 3>(3 * i, 3 * i);
-  return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(A, D).eigenvalues().maxCoeff();
+  return test_support::generalized_eigenpairs(A, D).values.maxCoeff();
 }
 
 TEST(Chebyshev, BoundsTheSpectrumFromAboveAndClosely) {
