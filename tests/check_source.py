@@ -20,7 +20,7 @@ RENDER_MAY = {"base", "mesh"}
 FENCES = [
     (r"<assimp/", r"core/mesh/readers/assimp_(scene_)?reader\.cpp$"),
     (r"<(tbb|oneapi)/", r"core/base/parallel\.(h|cpp)$"),
-    (r"<embree3/", r"render/pathtrace/ray_scene_embree\.cpp$"),
+    (r"<embree3/", r"render/pathtrace/(ray_scene_embree\.cpp|rays_embree\.h)$"),
     (r"<(EGL|GL|epoxy)/", r"render/preview/egl/[a-z_]+\.(cpp|h)$"),
     (r"<(Imf|Imath|OpenEXR|png\.h|stb)", r"render/image/image_io\.cpp$"),
     (r"<openvdb/", r"(tool/export/level_set_openvdb|tests/tool/export/level_set_test)\.cpp$"),

@@ -15,7 +15,10 @@ namespace {
 /// standard picture has a tenth more squared error, and takes 2 % less time.
 constexpr int kRouletteStart = 3;
 constexpr float kRouletteShare = 0.25f;
+
+/// So many lights are all sampled at what the camera sees directly, which makes most of the noise.
 constexpr std::size_t kFewLights = 4;
+
 /// Blocks of numbers from here on are those of the points where light leaves a body, one a scattering event.
 constexpr std::uint32_t kLeavingBlocks = 1u << 16;
 
@@ -36,13 +39,13 @@ enum Dimension : std::size_t {
 
 }  // namespace
 
-const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, SurfacePoint& point, const Ray& ray) {
+const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, SurfacePoint& point, std::optional<Bsdf>& colored) {
   const auto mesh = static_cast<std::size_t>(hit.mesh);
   // Lines have a width in the picture only: no other ray sees them.
-  if (picture_.lines[mesh] && origin_.from_camera && on_edge_line(*picture_.meshes[mesh], hit, ray, picture_.pixel))
+  if (picture_.lines[mesh] && origin_.from_camera && on_edge_line(*picture_.meshes[mesh], hit, ray_, picture_.pixel))
     return *picture_.lines[mesh];
-  if (const ColoredSurface* colored = picture_.colored[mesh].get())
-    return colored_.emplace(colored->at(hit, ray, cone_.width_at(hit.distance), scattered_wide_, point));
+  if (const ColoredSurface* surface = picture_.colored[mesh].get())
+    return colored.emplace(surface->at(hit, ray_, cone_.width_at(hit.distance), scattered_wide_, point));
   const std::vector<Bsdf>& bsdfs = scattered_wide_ ? picture_.blurred : picture_.bsdfs;
   if (picture_.pattern && mesh + 1 == picture_.meshes.size() && picture_.pattern->alternate(point.position))
     return bsdfs.back();
@@ -61,56 +64,62 @@ void PathIntegrator::record_first_hit(const RayHit& hit, const SurfacePoint& poi
   first_hit_.coverage = 1;
 }
 
-void PathIntegrator::add(const Vec3f& radiance) {
+Vec3f PathIntegrator::part_of(const Vec3f& radiance) const {
   Vec3f part = throughput_.cwiseProduct(radiance);
   // After the first scattering the light is direct; only what comes by way of another surface is clamped.
   if (picture_.clamp > 0 && bounces_ > 1) {
     const float largest = part.maxCoeff();
     if (largest > picture_.clamp) part *= picture_.clamp / largest;
   }
-  radiance_ += part;
+  return part;
 }
 
-void PathIntegrator::collect(const Ray& ray, bool hit, float distance) {
-  const float reach = hit ? distance : ray.max_distance;
-  Vec3f found = picture_.lights->area_lights_along(ray.origin, ray.direction, reach, origin_);
+void PathIntegrator::collect(bool hit, float distance) {
+  const float reach = hit ? distance : ray_.max_distance;
+  Vec3f found = picture_.lights->area_lights_along(ray_.origin, ray_.direction, reach, origin_);
   const bool shows_surroundings = !picture_.catches_shadows || bounces_ > 0;
-  if (!hit && shows_surroundings) found += picture_.lights->surroundings(ray.direction, origin_);
-  add(found);
+  if (!hit && shows_surroundings) found += picture_.lights->surroundings(ray_.direction, origin_);
+  radiance_ += part_of(found);
 }
 
-void PathIntegrator::collect_last(const Ray& ray) {
-  if (picture_.lights->area_lights_along(ray.origin, ray.direction, ray.max_distance, origin_).maxCoeff() > 0) {
+void PathIntegrator::miss() {
+  collect(false, 0);
+  lives_on_ = false;
+}
+
+void PathIntegrator::end_on_last_ray() {
+  lives_on_ = false;
+  if (picture_.lights->area_lights_along(ray_.origin, ray_.direction, ray_.max_distance, origin_).maxCoeff() > 0) {
     RayHit hit;
-    const bool found = picture_.rays->intersect(ray, hit, false);
-    collect(ray, found, hit.distance);
+    const bool found = picture_.rays->intersect(ray_, hit);
+    collect(found, hit.distance);
     return;
   }
-  const Vec3f beyond = picture_.lights->surroundings(ray.direction, origin_);
-  if (beyond.maxCoeff() > 0 && !picture_.rays->occluded(ray, false)) add(beyond);
+  const Vec3f beyond = picture_.lights->surroundings(ray_.direction, origin_);
+  if (beyond.maxCoeff() > 0 && !picture_.rays->occluded(ray_)) radiance_ += part_of(beyond);
 }
 
-void PathIntegrator::catch_shadow(const RayHit& hit, const Ray& ray) {
-  const SurfacePoint point = surface_point(*picture_.meshes.back(), hit, ray);
-  const CaughtLight light = caught_light(picture_, point, time_, sampler_.numbers(sample_, 1));
+void PathIntegrator::catch_shadow(const RayHit& hit) {
+  const SurfacePoint point = surface_point(*picture_.meshes.back(), hit, ray_);
+  const CaughtLight light = caught_light(picture_, point, ray_.time, sampler_.numbers(sample_, 1));
   first_hit_.caught = true;
   first_hit_.unshadowed = light.unshadowed;
   first_hit_.shadowed = light.shadowed;
 }
 
 void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                                const BsdfView& view, const SampleBlock& numbers) {
+                                const BsdfView& view, const SampleBlock& numbers, PathScratch& scratch) {
   // Most of the noise of glossy bodies is in the highlights of lamps: two points halve it for one more shadow ray.
   if (bounces_ == 1 && !leaving_ && bsdf.has_highlight()) {
     for (const Vec2f& u : sampler_.two_points(sample_, kTwoLightsBlock))
-      add_lights(bsdf, point, frame, view, numbers[kLight], u, 0.5f);
+      add_lights(bsdf, point, frame, view, numbers[kLight], u, 0.5f, scratch);
   } else {
-    add_lights(bsdf, point, frame, view, numbers[kLight], Vec2f(numbers[kLightU], numbers[kLightV]), 1);
+    add_lights(bsdf, point, frame, view, numbers[kLight], Vec2f(numbers[kLightU], numbers[kLightV]), 1, scratch);
   }
 }
 
 void PathIntegrator::add_lights(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                                const BsdfView& view, float choice, const Vec2f& u, float share) {
+                                const BsdfView& view, float choice, const Vec2f& u, float share, PathScratch& scratch) {
   const LightSet& lights = *picture_.lights;
   const std::size_t rays = origin_.receiver.every_light ? lights.count() : 1;
   for (std::size_t k = 0; k < rays; ++k) {
@@ -120,12 +129,13 @@ void PathIntegrator::add_lights(const Bsdf& bsdf, const SurfacePoint& point, con
                            ? lights.sample_light(k, origin_.receiver, choice, u, light, point_like)
                            : lights.sample(origin_.receiver, choice, u, light, point_like);
     light.radiance *= share;
-    if (found) add_light(bsdf, point, frame, view, light, point_like);
+    if (found) add_light(bsdf, point, frame, view, light, point_like, scratch.light_rays);
   }
 }
 
 void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                               const BsdfView& view, const LightSample& light, bool point_like) {
+                               const BsdfView& view, const LightSample& light, bool point_like,
+                               std::vector<LightRay>& light_rays) {
   if (picture_.direct_light == DirectLight::Scattering) return;
   const Vec3f towards = frame.to_local(light.direction);
   const BsdfValue value = leaving_ ? bsdf.evaluate_leaving(towards) : bsdf.evaluate(view, towards);
@@ -137,26 +147,25 @@ void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, cons
   shadow.origin = through ? point.lowered : point.lifted;
   shadow.direction = light.direction;
   shadow.max_distance = light.distance;
-  shadow.time = time_;
-  if (picture_.rays->occluded(shadow, bounces_ == 1)) return;
-  add(value.value.cwiseProduct(light.radiance) * (weight / light.pdf));
+  shadow.time = ray_.time;
+  light_rays.push_back({shadow, part_of(value.value.cwiseProduct(light.radiance) * (weight / light.pdf)), number_});
 }
 
 bool PathIntegrator::scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                             const BsdfView& view, const SampleBlock& numbers, Ray& ray) {
+                             const BsdfView& view, const SampleBlock& numbers, PathScratch& scratch) {
   BsdfSample next;
   if (!bsdf.sample(view, numbers[kSide], Vec2f(numbers[kBsdfU], numbers[kBsdfV]), next)) return false;
   throughput_ = throughput_.cwiseProduct(next.weight);
   if (!(throughput_.maxCoeff() > 0)) return false;
-  follow(next, point, frame, ray);
-  if (next.subsurface && !scatter_inside(bsdf, point, numbers, ray)) return false;
+  follow(next, point, frame);
+  if (next.subsurface && !scatter_inside(bsdf, point, numbers, scratch)) return false;
   return bounces_ < kRouletteStart || survives_roulette(numbers[kRoulette]);
 }
 
-void PathIntegrator::follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame, Ray& ray) {
-  ray.origin = next.direction.z() < 0 ? point.lowered : point.lifted;
-  ray.direction = frame.to_world(next.direction);
-  ray.max_distance = std::numeric_limits<float>::infinity();
+void PathIntegrator::follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame) {
+  ray_.origin = next.direction.z() < 0 ? point.lowered : point.lifted;
+  ray_.direction = frame.to_world(next.direction);
+  ray_.max_distance = std::numeric_limits<float>::infinity();
   // Density 0 gives lights that are met by scattering no weight beside their sampling.
   origin_.pdf = picture_.direct_light == DirectLight::Lights ? 0 : next.pdf;
   origin_.only_way = next.mirror || picture_.direct_light == DirectLight::Scattering;
@@ -164,14 +173,15 @@ void PathIntegrator::follow(const BsdfSample& next, const SurfacePoint& point, c
   origin_.from_camera = false;
 }
 
-bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const SampleBlock& numbers, Ray& ray) {
+bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const SampleBlock& numbers,
+                                    PathScratch& scratch) {
   // About the triangle's own normal: the interpolated one could lead out again.
   const Vec3f inward = -cosine_hemisphere(Vec2f(numbers[kBsdfU], numbers[kBsdfV]));
-  ray.direction = ShadingFrame(point.geometric_normal).to_world(inward);
+  ray_.direction = ShadingFrame(point.geometric_normal).to_world(inward);
   const SampleBlock leaving_numbers = sampler_.numbers(sample_, kLeavingBlocks + static_cast<std::uint32_t>(bounces_));
   RandomStream stream(std::uint64_t{std::bit_cast<std::uint32_t>(leaving_numbers[kRoulette])} << 32 |
                       std::bit_cast<std::uint32_t>(leaving_numbers[kBsdfU]));
-  const WalkStart start{ray, throughput_.cwiseProduct(bsdf.subsurface().color), leaving_numbers[kSide],
+  const WalkStart start{ray_, throughput_.cwiseProduct(bsdf.subsurface().color), leaving_numbers[kSide],
                         leaving_numbers[kLength]};
   WalkExit exit;
   if (!random_walk(picture_.rays->trees(), mesh_, medium_of(bsdf.subsurface()), start, stream, exit)) return false;
@@ -181,9 +191,9 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   seen.direction = -exit.ray.direction;
   const SurfacePoint out = surface_point(*picture_.meshes[static_cast<std::size_t>(mesh_)], exit.hit, seen);
   const ShadingFrame frame(out.shading_normal);
-  origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light, time_};
+  origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light, ray_.time};
   leaving_ = true;
-  add_direct(bsdf, out, frame, {}, leaving_numbers);
+  add_direct(bsdf, out, frame, {}, leaving_numbers, scratch);
   leaving_ = false;
   BsdfSample next;
   next.direction = cosine_hemisphere(Vec2f(leaving_numbers[kBsdfU], leaving_numbers[kBsdfV]));
@@ -192,7 +202,7 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   throughput_ = throughput_.cwiseProduct(value.value / value.pdf);
   next.pdf = value.pdf;
   next.wide = true;
-  follow(next, out, frame, ray);
+  follow(next, out, frame);
   return true;
 }
 
@@ -203,49 +213,32 @@ bool PathIntegrator::survives_roulette(float u) {
   return true;
 }
 
-Vec3f PathIntegrator::trace(const Ray& camera_ray) {
-  Ray ray = camera_ray;
-  time_ = ray.time;
-  for (;;) {
-    if (bounces_ > 0 && bounces_ == picture_.max_bounces && !picture_.has_emission) {
-      collect_last(ray);
-      break;
-    }
-    RayHit hit;
-    const bool found = picture_.rays->intersect(ray, hit, bounces_ == 0);
-    if (!found) {
-      collect(ray, false, 0);
-      break;
-    }
-    mesh_ = hit.mesh;
-    const MotionMesh& mesh = *picture_.meshes[static_cast<std::size_t>(hit.mesh)];
-    prefetch_triangle(mesh, hit);
-    collect(ray, true, hit.distance);
-    prefetch_corners(mesh, hit, ray);
-    if (bounces_ == 0 && picture_.catches_shadows && hit.mesh + 1 == static_cast<Index>(picture_.meshes.size())) {
-      catch_shadow(hit, ray);
-      break;
-    }
-    const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(bounces_ + 1));
-    SurfacePoint point = surface_point(mesh, hit, ray);
-    const Bsdf& bsdf = bsdf_at(hit, point, ray);
-    if (bounces_ == 0) record_first_hit(hit, point, bsdf);
-    if (point.inside && bsdf.transmits())
-      throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());
-    if (!point.inside && bsdf.emission().maxCoeff() > 0)
-      add(picture_.lights->emission_weight(ray, hit, origin_) * bsdf.emission());
-    if (bounces_ == picture_.max_bounces) break;
-    ++bounces_;
-    const ShadingFrame frame(point.shading_normal);
-    const BsdfView view = bsdf.seen_from(frame.to_local(-ray.direction), point.inside);
-    // What the camera sees directly makes most of the noise: few lights are all sampled there.
-    const bool every_light = bounces_ == 1 && picture_.lights->count() <= kFewLights;
-    origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, time_};
-    if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, view, numbers);
-    if (!scatter(bsdf, point, frame, view, numbers, ray)) break;
-    if (picture_.has_textures) cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
+void PathIntegrator::arrive(const RayHit& hit, PathScratch& scratch) {
+  mesh_ = hit.mesh;
+  const MotionMesh& mesh = *picture_.meshes[static_cast<std::size_t>(hit.mesh)];
+  collect(true, hit.distance);
+  lives_on_ = false;
+  if (bounces_ == 0 && picture_.catches_shadows && hit.mesh + 1 == static_cast<Index>(picture_.meshes.size())) {
+    catch_shadow(hit);
+    return;
   }
-  return radiance_;
+  const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(bounces_ + 1));
+  SurfacePoint point = surface_point(mesh, hit, ray_);
+  const Bsdf& bsdf = bsdf_at(hit, point, scratch.colored);
+  if (bounces_ == 0) record_first_hit(hit, point, bsdf);
+  if (point.inside && bsdf.transmits())
+    throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());
+  if (!point.inside && bsdf.emission().maxCoeff() > 0)
+    radiance_ += part_of(picture_.lights->emission_weight(ray_, hit, origin_) * bsdf.emission());
+  if (bounces_ == picture_.max_bounces) return;
+  ++bounces_;
+  const ShadingFrame frame(point.shading_normal);
+  const BsdfView view = bsdf.seen_from(frame.to_local(-ray_.direction), point.inside);
+  const bool every_light = bounces_ == 1 && picture_.lights->count() <= kFewLights;
+  origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, ray_.time};
+  if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, view, numbers, scratch);
+  lives_on_ = scatter(bsdf, point, frame, view, numbers, scratch);
+  if (picture_.has_textures) cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
 }
 
 }  // namespace softreel

@@ -55,58 +55,92 @@ struct FirstHit {
   float unshadowed = 0, shadowed = 0;  ///< as CaughtLight
 };
 
-/// One path.
+/// What paths that are traced side by side (path_batch.h) share while each of them scatters.
+struct PathScratch {
+  /// A ray towards a light, and what its path gains where nothing is in the way.
+  struct LightRay {
+    Ray ray;
+    Vec3f part;
+    std::size_t path;
+  };
+  std::vector<LightRay> light_rays;
+  std::optional<Bsdf> colored;  ///< of the last hit, if its mesh has a coloring
+};
+
+/// One path, from event to event. While lives_on(), its ray is to be shot, and what it meets to be told.
 class PathIntegrator {
  public:
-  PathIntegrator(const Picture& picture, const Sampler& sampler, std::uint32_t sample)
-      : picture_(picture), sampler_(sampler), sample_(sample), cone_{0, picture.cone_spread} {}
+  /// number: among the paths of a PathScratch.
+  PathIntegrator(const Picture& picture, const Sampler& sampler, std::uint32_t sample, const Ray& camera_ray,
+                 std::size_t number)
+      : picture_(picture),
+        sampler_(sampler),
+        sample_(sample),
+        number_(number),
+        camera_ray_(camera_ray),
+        ray_(camera_ray),
+        cone_{0, picture.cone_spread} {}
 
-  /// Radiance arriving at the start of a camera ray.
-  Vec3f trace(const Ray& camera_ray);
+  bool lives_on() const { return lives_on_; }
+  const Ray& ray() const { return ray_; }
+  /// Whether the ray is its last one, of which end_on_last_ray() finds all that counts.
+  bool is_on_last_ray() const { return bounces_ > 0 && bounces_ == picture_.max_bounces && !picture_.has_emission; }
+  void end_on_last_ray();
+  void miss();
+  /// Scatters where the ray hit, and leaves rays towards lights in `scratch`.
+  void arrive(const RayHit& hit, PathScratch& scratch);
+  /// Of a light ray that nothing is in the way of.
+  void gain(const Vec3f& part) { radiance_ += part; }
+
+  const Ray& camera_ray() const { return camera_ray_; }
+  /// Radiance arriving at the start of the camera ray.
+  const Vec3f& radiance() const { return radiance_; }
   const FirstHit& first_hit() const { return first_hit_; }
 
  private:
-  const Bsdf& bsdf_at(const RayHit& hit, SurfacePoint& point, const Ray& ray);
+  using LightRay = PathScratch::LightRay;
+
+  const Bsdf& bsdf_at(const RayHit& hit, SurfacePoint& point, std::optional<Bsdf>& colored);
   void record_first_hit(const RayHit& hit, const SurfacePoint& point, const Bsdf& bsdf);
   /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
-  void collect(const Ray& ray, bool hit, float distance);
-  /// The same of a path's last ray where no mesh shines: what it hits need not be found.
-  void collect_last(const Ray& ray);
-  void add(const Vec3f& radiance);
+  void collect(bool hit, float distance);
+  /// What light that arrives at the last event adds.
+  Vec3f part_of(const Vec3f& radiance) const;
   /// What the camera sees of the shadow catcher: nothing but its alpha.
-  void catch_shadow(const RayHit& hit, const Ray& ray);
+  void catch_shadow(const RayHit& hit);
   /// Light sampling at a point. view: of `bsdf` from where the path comes; not asked for while light leaves a body.
   void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
-                  const SampleBlock& numbers);
+                  const SampleBlock& numbers, PathScratch& scratch);
   /// Of every light, or of one of them. share: of the light that counts.
   void add_lights(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
-                  float choice, const Vec2f& u, float share);
+                  float choice, const Vec2f& u, float share, PathScratch& scratch);
   void add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
-                 const LightSample& light, bool point_like);
+                 const LightSample& light, bool point_like, std::vector<LightRay>& light_rays);
   /// Continues the path; false where it ends.
   bool scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
-               const SampleBlock& numbers, Ray& ray);
+               const SampleBlock& numbers, PathScratch& scratch);
   /// Takes a sampled direction.
-  void follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame, Ray& ray);
+  void follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame);
   /// From a subsurface sample at `point` through the body to where it leaves, lights sampled there; counts as one
   /// scattering with the one that entered. False where the path ends.
-  bool scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const SampleBlock& numbers, Ray& ray);
+  bool scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const SampleBlock& numbers, PathScratch& scratch);
   bool survives_roulette(float u);
 
   const Picture& picture_;
-  const Sampler& sampler_;
+  Sampler sampler_;
   std::uint32_t sample_;
+  std::size_t number_;
+  Ray camera_ray_, ray_;
+  bool lives_on_ = true;
   Vec3f radiance_ = Vec3f::Zero();
   Vec3f throughput_ = Vec3f::Ones();
-  int bounces_ = 0;  ///< scattering events so far
-  float time_ = 0;
+  int bounces_ = 0;       ///< scattering events so far
   Index mesh_ = -1;       ///< last one hit
   bool leaving_ = false;  ///< lights are sampled for light that leaves a body
   bool scattered_wide_ = false;
   RayOrigin origin_;
   FirstHit first_hit_;
   RayCone cone_;
-  std::optional<Bsdf> colored_;  ///< of the last hit, if its mesh has a coloring
 };
 
 }  // namespace softreel

@@ -11,10 +11,8 @@
 #include "core/base/error.h"
 #include "render/pathtrace/adaptive_sampling.h"
 #include "render/pathtrace/camera_rays.h"
-#include "render/pathtrace/path_integrator.h"
 #include "render/pathtrace/picture_hash.h"
-#include "render/pathtrace/pixel_channels.h"
-#include "render/pathtrace/pixel_sums.h"
+#include "render/pathtrace/pixel_sampling.h"
 #include "render/scene/camera_frame.h"
 
 namespace softreel {
@@ -79,22 +77,30 @@ class Frame {
 
   /// All of the picture's samples at once, so that no pixel's sums have to be kept.
   void render_tile(int tile) const {
-    for_pixels(tile, [&](int x, int y) {
-      PixelSums sums;
-      std::optional<PixelChannels> gathered;
-      if (channels_.any()) gathered.emplace(channels_);
-      PixelChannels* const wanted = gathered ? &*gathered : nullptr;
-      add_samples(x, y, params_.samples, sums, wanted);
-      store(place(x, y), sums, wanted);
+    for_rows(tile, [&](PixelSampling& sampling, int x0, int x1, int y) {
+      std::array<PixelSums, kTile> sums;
+      std::vector<PixelChannels> gathered;
+      if (channels_.any()) gathered.assign(kTile, PixelChannels(channels_));
+      sample_row(sampling, x0, x1, y, params_.samples, [&](int x) {
+        const auto k = static_cast<std::size_t>(x - x0);
+        return SampledPixel{0, 0, &sums[k], gathered.empty() ? nullptr : &gathered[k]};
+      });
+      for (int x = x0; x < x1; ++x) {
+        const auto k = static_cast<std::size_t>(x - x0);
+        store(place(x, y), sums[k], gathered.empty() ? nullptr : &gathered[k]);
+      }
     });
   }
 
   /// One pass: up to `samples` a pixel where `wanted` says so. gathered: per pixel; empty without channels.
   void render_tile(int tile, int samples, const std::vector<std::uint8_t>& wanted, std::vector<PixelSums>& all,
                    std::vector<PixelChannels>& gathered) const {
-    for_pixels(tile, [&](int x, int y) {
-      const std::size_t pixel = place(x, y);
-      if (wanted[pixel] != 0) add_samples(x, y, samples, all[pixel], gathered.empty() ? nullptr : &gathered[pixel]);
+    for_rows(tile, [&](PixelSampling& sampling, int x0, int x1, int y) {
+      sample_row(sampling, x0, x1, y, samples, [&](int x) {
+        const std::size_t pixel = place(x, y);
+        if (wanted[pixel] == 0) return SampledPixel{};
+        return SampledPixel{0, 0, &all[pixel], gathered.empty() ? nullptr : &gathered[pixel]};
+      });
     });
   }
 
@@ -113,28 +119,26 @@ class Frame {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
   }
 
+  /// visit(sampling, x0, x1, y): pixels of one row of a tile.
   template <typename Visit>
-  void for_pixels(int tile, const Visit& visit) const {
+  void for_rows(int tile, const Visit& visit) const {
     const int x0 = tile % tiles_across() * kTile, y0 = tile / tiles_across() * kTile;
+    PixelSampling sampling(picture_, rays_, hash_);
     for (int y = y0; y < std::min(y0 + kTile, image_.height); ++y)
-      for (int x = x0; x < std::min(x0 + kTile, image_.width); ++x) visit(x, y);
+      visit(sampling, x0, std::min(x0 + kTile, image_.width), y);
   }
 
-  /// Samples are keyed by the place in the whole picture: a crop has the bits of the picture that it is cut from.
-  void add_samples(int x, int y, int up_to, PixelSums& sums, PixelChannels* gathered) const {
-    const int at_x = window_.left + x, at_y = window_.top + y;
-    const Sampler sampler(hash_, at_x, at_y);
-    PixelSums before;
-    while (sums.samples < up_to) {
-      const auto s = static_cast<std::uint32_t>(sums.samples);
-      if (s % kBatch == 0) before = sums;
-      PathIntegrator path(picture_, sampler, s);
-      const Ray ray = rays_.ray(at_x, at_y, sampler.numbers(s, 0));
-      const Vec3f radiance = path.trace(ray);
-      sums.add(radiance, path.first_hit());
-      if (gathered != nullptr) gathered->add(ray, path.first_hit());
-      if (sums.samples % kBatch == 0) sums.close_batch(before);
+  /// pixel_at(x): where samples of a pixel go; nowhere if its sums are null.
+  template <typename PixelAt>
+  void sample_row(PixelSampling& sampling, int x0, int x1, int y, int samples, const PixelAt& pixel_at) const {
+    std::array<SampledPixel, kTile> pixels;
+    for (int x = x0; x < x1; ++x) {
+      SampledPixel& pixel = pixels[static_cast<std::size_t>(x - x0)] = pixel_at(x);
+      pixel.x = window_.left + x;
+      pixel.y = window_.top + y;
+      if (pixel.sums != nullptr) sampling.take(pixel, samples);
     }
+    sampling.finish();
   }
 
   const RenderParams& params_;

@@ -1,8 +1,10 @@
 /// Triangles in trees that rays are shot at.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "render/scene/scene.h"
@@ -24,6 +26,9 @@ struct RayHit {
   Index triangle = -1;
 };
 
+/// Most rays that are shot together, as wide as Embree's vectors.
+inline constexpr std::size_t kRayPacket = 8;
+
 /// Trees over the meshes of one frame. Queries are thread-safe.
 class RayScene {
  public:
@@ -36,12 +41,18 @@ class RayScene {
   /// (Threads::run). Throws work_error where memory is short.
   virtual void build(const std::vector<const MotionMesh*>& meshes, double paths) = 0;
 
-  /// coherent: neighbouring calls have similar rays (a hint for speed only).
-  virtual bool intersect(const Ray& ray, RayHit& hit, bool coherent) const = 0;
+  virtual bool intersect(const Ray& ray, RayHit& hit) const = 0;
   /// As intersect, but of one mesh, whose material scatters light inside (subsurface above 0). front: hit from outside.
   virtual bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const = 0;
   /// Whether anything is on the ray.
-  virtual bool occluded(const Ray& ray, bool coherent) const = 0;
+  virtual bool occluded(const Ray& ray) const = 0;
+
+  /// intersect of at most kRayPacket rays together, which is quicker where they are similar. hits: as many as rays;
+  /// .mesh is -1 where nothing is hit.
+  virtual void intersect_packet(std::span<const Ray> rays, std::span<RayHit> hits) const {
+    for (std::size_t k = 0; k < rays.size(); ++k)
+      if (!intersect(rays[k], hits[k])) hits[k].mesh = -1;
+  }
 };
 
 /// threads: how many will call it and build its trees.

@@ -1,16 +1,15 @@
-/// The only place that knows Embree.
+/// The only place, with rays_embree.h, that knows Embree.
 #include <algorithm>
-#include <cstddef>
 #include <cstring>
 #include <optional>
 #include <string>
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include "core/base/check.h"
 #include "core/base/error.h"
 #include "render/pathtrace/ray_scene.h"
+#include "render/pathtrace/rays_embree.h"
 #include "render/pathtrace/tree_fit.h"
 
 namespace softreel {
@@ -46,29 +45,6 @@ void copy_triangles(RTCGeometry geometry, const std::vector<Triangle>& triangles
   void* buffer =
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), triangles.size());
   if (buffer != nullptr) std::memcpy(buffer, triangles.data(), triangles.size() * sizeof(Triangle));
-}
-
-RTCIntersectContext context_of(bool coherent) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  return context;
-}
-
-/// Four floats that are stored at once.
-using Quad [[gnu::vector_size(16)]] = float;
-
-/// By quads, as Embree loads them: loads of what was stored by parts wait until the stores are through.
-void set_ray(const Ray& ray, RTCRay& out) {
-  const Quad from{ray.origin.x(), ray.origin.y(), ray.origin.z(), 0};
-  const Quad along{ray.direction.x(), ray.direction.y(), ray.direction.z(), ray.time};
-  auto* const to = reinterpret_cast<char*>(&out);
-  std::memcpy(to + offsetof(RTCRay, org_x), &from, sizeof from);
-  std::memcpy(to + offsetof(RTCRay, dir_x), &along, sizeof along);
-  out.tfar = ray.max_distance;
-  out.mask = 0xffffffffu;
-  out.id = 0;
-  out.flags = 0;
 }
 
 /// Meshes one after another, as one: of it Embree refits a tree. Of several geometries it would build the top of the
@@ -235,11 +211,14 @@ class EmbreeScene : public RayScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
   void build(const std::vector<const MotionMesh*>& meshes, double paths) override;
-  bool intersect(const Ray& ray, RayHit& hit, bool coherent) const override;
+  bool intersect(const Ray& ray, RayHit& hit) const override;
   bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const override;
-  bool occluded(const Ray& ray, bool coherent) const override;
+  bool occluded(const Ray& ray) const override;
+  void intersect_packet(std::span<const Ray> rays, std::span<RayHit> hits) const override;
 
  private:
+  /// The triangle's mesh and number, of Embree's.
+  void name_triangle(unsigned geometry, unsigned primitive, RayHit& hit) const;
   bool fit_rest_trees(const std::vector<const MotionMesh*>& meshes, double paths);
   void build_own_trees(const std::vector<const MotionMesh*>& meshes);
   void attach(const MotionMesh& mesh, unsigned id);
@@ -318,8 +297,17 @@ void EmbreeScene::build_own_trees(const std::vector<const MotionMesh*>& meshes) 
   require_no_error(device_, "building trees");
 }
 
-bool EmbreeScene::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
-  RTCIntersectContext context = context_of(coherent);
+void EmbreeScene::name_triangle(unsigned geometry, unsigned primitive, RayHit& hit) const {
+  if (fitted_ != nullptr) {
+    fitted_->find_triangle(primitive, hit);
+  } else {
+    hit.mesh = static_cast<Index>(geometry);
+    hit.triangle = static_cast<Index>(primitive);
+  }
+}
+
+bool EmbreeScene::intersect(const Ray& ray, RayHit& hit) const {
+  RTCIntersectContext context = new_context();
   RTCRayHit query;
   set_ray(ray, query.ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -328,17 +316,12 @@ bool EmbreeScene::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
   hit.distance = query.ray.tfar;
   hit.u = query.hit.u;
   hit.v = query.hit.v;
-  if (fitted_ != nullptr) {
-    fitted_->find_triangle(query.hit.primID, hit);
-  } else {
-    hit.mesh = static_cast<Index>(query.hit.geomID);
-    hit.triangle = static_cast<Index>(query.hit.primID);
-  }
+  name_triangle(query.hit.geomID, query.hit.primID, hit);
   return true;
 }
 
 bool EmbreeScene::intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const {
-  RTCIntersectContext context = context_of(false);
+  RTCIntersectContext context = new_context();
   RTCRayHit query;
   set_ray(ray, query.ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -349,12 +332,26 @@ bool EmbreeScene::intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& 
   return true;
 }
 
-bool EmbreeScene::occluded(const Ray& ray, bool coherent) const {
-  RTCIntersectContext context = context_of(coherent);
+bool EmbreeScene::occluded(const Ray& ray) const {
+  RTCIntersectContext context = new_context();
   RTCRay query;
   set_ray(ray, query);
   rtcOccluded1(scene_, &context, &query);
   return query.tfar < 0;
+}
+
+void EmbreeScene::intersect_packet(std::span<const Ray> rays, std::span<RayHit> hits) const {
+  RTCIntersectContext context = new_context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  const Lanes lanes(rays.size());
+  RTCRayHit8 query;
+  set_rays(rays, query.ray);
+  std::fill_n(query.hit.geomID, kRayPacket, RTC_INVALID_GEOMETRY_ID);
+  rtcIntersect8(lanes.valid.data(), scene_, &context, &query);
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    hits[k] = {query.ray.tfar[k], query.hit.u[k], query.hit.v[k], -1, -1};
+    if (query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
+      name_triangle(query.hit.geomID[k], query.hit.primID[k], hits[k]);
+  }
 }
 
 }  // namespace

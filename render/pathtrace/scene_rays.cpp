@@ -1,6 +1,25 @@
 #include "render/pathtrace/scene_rays.h"
 
+#include <array>
+
 namespace softreel {
+
+namespace {
+
+/// Those rays of a packet that may meet bodies.
+struct RayPart {
+  std::array<Ray, kRayPacket> rays;
+  std::array<std::size_t, kRayPacket> places{};  ///< in the packet
+  std::size_t count = 0;
+
+  Ray& add(const Ray& ray, std::size_t place) {
+    places[count] = place;
+    return rays[count++] = ray;
+  }
+  std::span<const Ray> shot() const { return {rays.data(), count}; }
+};
+
+}  // namespace
 
 void MotionBox::add(const MotionMesh& mesh) {
   Vec3f least = low, most = high;
@@ -20,20 +39,37 @@ SceneRays::SceneRays(const RayScene& trees, const std::vector<const MotionMesh*>
   for (const MotionMesh* body : bodies) bodies_.add(*body);
 }
 
-bool SceneRays::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
-  if (!ground_) return trees_.intersect(ray, hit, coherent);
+bool SceneRays::intersect(const Ray& ray, RayHit& hit) const {
+  if (!ground_) return trees_.intersect(ray, hit);
   const bool on_ground = ground_->intersect(ray, hit);
   if (on_ground) hit.mesh = ground_mesh_;
   if (!bodies_.may_meet(ray)) return on_ground;
   Ray nearer = ray;
   if (on_ground) nearer.max_distance = hit.distance;
-  return trees_.intersect(nearer, hit, coherent) || on_ground;
+  return trees_.intersect(nearer, hit) || on_ground;
 }
 
-bool SceneRays::occluded(const Ray& ray, bool coherent) const {
-  if (!ground_) return trees_.occluded(ray, coherent);
-  if (bodies_.may_meet(ray) && trees_.occluded(ray, coherent)) return true;
+bool SceneRays::occluded(const Ray& ray) const {
+  if (!ground_) return trees_.occluded(ray);
+  if (bodies_.may_meet(ray) && trees_.occluded(ray)) return true;
   return ground_->blocks(ray);
+}
+
+void SceneRays::intersect_packet(std::span<const Ray> rays, std::span<RayHit> hits) const {
+  if (!ground_) return trees_.intersect_packet(rays, hits);
+  RayPart part;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const bool on_ground = ground_->intersect(rays[k], hits[k]);
+    hits[k].mesh = on_ground ? ground_mesh_ : -1;
+    if (!bodies_.may_meet(rays[k])) continue;
+    Ray& nearer = part.add(rays[k], k);
+    if (on_ground) nearer.max_distance = hits[k].distance;
+  }
+  if (part.count == 0) return;
+  std::array<RayHit, kRayPacket> found;
+  trees_.intersect_packet(part.shot(), {found.data(), part.count});
+  for (std::size_t j = 0; j < part.count; ++j)
+    if (found[j].mesh >= 0) hits[part.places[j]] = found[j];
 }
 
 }  // namespace softreel

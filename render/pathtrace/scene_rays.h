@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/pathtrace/ray_scene.h"
@@ -40,8 +41,9 @@ class SceneRays {
 
   const RayScene& trees() const { return trees_; }
   /// As RayScene's.
-  bool intersect(const Ray& ray, RayHit& hit, bool coherent) const;
-  bool occluded(const Ray& ray, bool coherent) const;
+  bool intersect(const Ray& ray, RayHit& hit) const;
+  bool occluded(const Ray& ray) const;
+  void intersect_packet(std::span<const Ray> rays, std::span<RayHit> hits) const;
 
  private:
   const RayScene& trees_;

@@ -11,7 +11,7 @@ bool bodies_are_on(const Picture& picture, Ray ray) {
   const auto ground = static_cast<Index>(picture.meshes.size()) - 1;
   for (int k = 0; k < kMostGroundHits; ++k) {
     RayHit hit;
-    if (!picture.rays->intersect(ray, hit, false)) return false;
+    if (!picture.rays->intersect(ray, hit)) return false;
     if (hit.mesh != ground) return true;
     const float passed = hit.distance * (1 + 1e-4f) + 1e-5f;
     ray.origin += passed * ray.direction;

@@ -4,14 +4,14 @@
 
 namespace softreel {
 
-bool RecordingScene::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
-  recorded_.push_back({ray, false, coherent});
-  return rays_->intersect(ray, hit, coherent);
+bool RecordingScene::intersect(const Ray& ray, RayHit& hit) const {
+  recorded_.push_back({ray, false});
+  return rays_->intersect(ray, hit);
 }
 
-bool RecordingScene::occluded(const Ray& ray, bool coherent) const {
-  recorded_.push_back({ray, true, coherent});
-  return rays_->occluded(ray, coherent);
+bool RecordingScene::occluded(const Ray& ray) const {
+  recorded_.push_back({ray, true});
+  return rays_->occluded(ray);
 }
 
 std::int64_t RecordingScene::shoot_again(const Threads& threads) const {
@@ -22,7 +22,7 @@ std::int64_t RecordingScene::shoot_again(const Threads& threads) const {
     for (std::int64_t k = begin; k < end; ++k) {
       const Recorded& one = recorded_[static_cast<std::size_t>(k)];
       RayHit hit;
-      if (one.shadow ? rays_->occluded(one.ray, one.coherent) : rays_->intersect(one.ray, hit, one.coherent)) ++found;
+      if (one.shadow ? rays_->occluded(one.ray) : rays_->intersect(one.ray, hit)) ++found;
     }
     hits += found;
   });

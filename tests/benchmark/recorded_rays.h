@@ -15,12 +15,12 @@ class RecordingScene : public RayScene {
   explicit RecordingScene(std::unique_ptr<RayScene> rays) : rays_(std::move(rays)) {}
 
   void build(const std::vector<const MotionMesh*>& meshes, double paths) override { rays_->build(meshes, paths); }
-  bool intersect(const Ray& ray, RayHit& hit, bool coherent) const override;
+  bool intersect(const Ray& ray, RayHit& hit) const override;
   /// Of walks inside bodies, which the standard picture has not: passed on, not recorded.
   bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const override {
     return rays_->intersect_body(mesh, ray, hit, front);
   }
-  bool occluded(const Ray& ray, bool coherent) const override;
+  bool occluded(const Ray& ray) const override;
 
   std::size_t count() const { return recorded_.size(); }
   /// Shoots all of them, in their order; returns how many hit something.
@@ -29,7 +29,7 @@ class RecordingScene : public RayScene {
  private:
   struct Recorded {
     Ray ray;
-    bool shadow, coherent;
+    bool shadow;
   };
   std::unique_ptr<RayScene> rays_;
   mutable std::vector<Recorded> recorded_;

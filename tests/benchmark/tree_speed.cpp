@@ -81,7 +81,7 @@ std::vector<Ray> second_rays(const MotionMesh& mesh, const RayScene& scene, cons
   std::vector<Ray> rays;
   for (std::size_t k = 0; k < first.size(); ++k) {
     RayHit hit;
-    if (!scene.intersect(first[k], hit, true)) continue;
+    if (!scene.intersect(first[k], hit)) continue;
     const Triangle& t = mesh.triangles[static_cast<std::size_t>(hit.triangle)];
     const auto corner = [&](std::size_t c) { return mesh.times[0].positions[static_cast<std::size_t>(t[c])]; };
     Vec3f normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
@@ -106,7 +106,7 @@ double shoot(const RayScene& scene, const std::vector<Ray>& rays, std::vector<In
   const double start = cpu_ms();
   for (std::size_t k = 0; k < rays.size(); ++k) {
     RayHit hit;
-    hits[k] = scene.intersect(rays[k], hit, false) ? hit.triangle : -1;
+    hits[k] = scene.intersect(rays[k], hit) ? hit.triangle : -1;
   }
   return cpu_ms() - start;
 }

@@ -51,7 +51,7 @@ std::vector<Ray> rays_at(const std::vector<MotionMesh>& meshes) {
 
 std::vector<RayHit> hits(const RayScene& scene, const std::vector<Ray>& rays) {
   std::vector<RayHit> found(rays.size());
-  for (std::size_t k = 0; k < rays.size(); ++k) scene.intersect(rays[k], found[k], false);
+  for (std::size_t k = 0; k < rays.size(); ++k) scene.intersect(rays[k], found[k]);
   return found;
 }
 

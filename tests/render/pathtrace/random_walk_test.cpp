@@ -14,8 +14,8 @@ class Slab : public RayScene {
  public:
   explicit Slab(float depth) : depth_(depth) {}
   void build(const std::vector<const MotionMesh*>& /*meshes*/, double /*paths*/) override {}
-  bool intersect(const Ray& /*ray*/, RayHit& /*hit*/, bool /*coherent*/) const override { return false; }
-  bool occluded(const Ray& /*ray*/, bool /*coherent*/) const override { return false; }
+  bool intersect(const Ray& /*ray*/, RayHit& /*hit*/) const override { return false; }
+  bool occluded(const Ray& /*ray*/) const override { return false; }
   bool intersect_body(Index mesh, const Ray& ray, RayHit& hit, bool& front) const override {
     const float wall = ray.direction.y() > 0 ? 0 : -depth_;
     const float distance = (wall - ray.origin.y()) / ray.direction.y();
