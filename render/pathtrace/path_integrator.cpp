@@ -16,7 +16,7 @@ namespace {
 constexpr int kRouletteStart = 3;
 constexpr float kRouletteShare = 0.25f;
 
-/// So many lights are all sampled at what the camera sees directly, which makes most of the noise.
+/// Up to so many lights are all sampled at what the camera sees directly, which makes most of the noise.
 constexpr std::size_t kFewLights = 4;
 
 /// Blocks of numbers from here on are those of the points where light leaves a body, one a scattering event.
@@ -238,7 +238,8 @@ void PathIntegrator::arrive(const RayHit& hit, PathScratch& scratch) {
   origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, ray_.time};
   if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, view, numbers, scratch);
   lives_on_ = scatter(bsdf, point, frame, view, numbers, scratch);
-  if (picture_.has_textures) cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
+  if (lives_on_ && picture_.has_textures)
+    cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
 }
 
 }  // namespace softreel

@@ -55,7 +55,7 @@ struct FirstHit {
   float unshadowed = 0, shadowed = 0;  ///< as CaughtLight
 };
 
-/// What paths that are traced side by side (path_batch.h) share while each of them scatters.
+/// What paths that are traced side by side (path_group.h) share.
 struct PathScratch {
   /// A ray towards a light, and what its path gains where nothing is in the way.
   struct LightRay {
@@ -67,10 +67,11 @@ struct PathScratch {
   std::optional<Bsdf> colored;  ///< of the last hit, if its mesh has a coloring
 };
 
-/// One path, from event to event. While lives_on(), its ray is to be shot, and what it meets to be told.
+/// One path, from event to event. While lives_on(), its ray is to be shot, and what it meets to be told: miss() or
+/// arrive(); but of its last one, where is_on_last_ray(), end_on_last_ray() finds what counts.
 class PathIntegrator {
  public:
-  /// number: among the paths of a PathScratch.
+  /// number: its place among the paths beside it, for LightRay::path.
   PathIntegrator(const Picture& picture, const Sampler& sampler, std::uint32_t sample, const Ray& camera_ray,
                  std::size_t number)
       : picture_(picture),
@@ -83,7 +84,7 @@ class PathIntegrator {
 
   bool lives_on() const { return lives_on_; }
   const Ray& ray() const { return ray_; }
-  /// Whether the ray is its last one, of which end_on_last_ray() finds all that counts.
+  /// Whether the ray is its last one. Where no mesh shines, what that hits need not be found: only whether.
   bool is_on_last_ray() const { return bounces_ > 0 && bounces_ == picture_.max_bounces && !picture_.has_emission; }
   void end_on_last_ray();
   void miss();

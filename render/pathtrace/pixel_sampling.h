@@ -1,36 +1,44 @@
-/// Samples of pixels, taken by batches of paths.
+/// Samples of pixels, taken by groups of paths.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "render/pathtrace/camera_rays.h"
-#include "render/pathtrace/path_batch.h"
+#include "render/pathtrace/path_group.h"
 #include "render/pathtrace/pixel_channels.h"
 #include "render/pathtrace/pixel_sums.h"
 
 namespace softreel {
+
+static_assert(kBatch % kRayPacket == 0, "passes of whole batches are passes of whole packets");
 
 /// A pixel that samples are taken of.
 struct SampledPixel {
   int x = 0, y = 0;                   ///< in the whole picture, which keys the samples: a crop has the bits of it
   PixelSums* sums = nullptr;          ///< samples so far
   PixelChannels* gathered = nullptr;  ///< of the other channels; null without
-  PixelSums before{};                 ///< when its last batch (kBatch) began
+  PixelSums before{};                 ///< when its last batch of samples (kBatch) began
 };
 
 class PixelSampling {
  public:
   /// hash: of what the picture shows.
   PixelSampling(const Picture& picture, const CameraRays& rays, std::uint64_t hash)
-      : rays_(rays), hash_(hash), batch_(picture) {}
+      : rays_(rays), hash_(hash), group_(picture) {}
 
-  /// Up to so many samples of a pixel, which has all of them after finish(); not twice before that.
+  /// Up to so many samples of a pixel, which has all of them after finish(); not twice before that, and it has to stay
+  /// where it is until then. Packets of camera rays are of one pixel and of samples 8 k to 8 k + 7, so that windows and
+  /// passes of whole batches have the bits of the whole picture.
   void take(SampledPixel& pixel, int up_to);
   void finish();
 
  private:
   const CameraRays& rays_;
   std::uint64_t hash_;
-  PathBatch batch_;
-  std::array<SampledPixel*, kBatchPaths> pixels_{};  ///< of the paths of the batch
+  PathGroup group_;
+  int packet_ = 0;                                   ///< number of the last one
+  std::array<SampledPixel*, kGroupPaths> pixels_{};  ///< of the paths of the group
 };
 
 }  // namespace softreel

@@ -48,7 +48,8 @@ class RayScene {
   virtual bool occluded(const Ray& ray) const = 0;
 
   /// intersect of at most kRayPacket rays together, which is quicker where they are similar. hits: as many as rays;
-  /// .mesh is -1 where nothing is hit.
+  /// .mesh is -1 where nothing is hit. Of triangles at equal distances each ray hits one, but which of them may depend
+  /// on the others.
   virtual void intersect_packet(std::span<const Ray> rays, std::span<RayHit> hits) const {
     for (std::size_t k = 0; k < rays.size(); ++k)
       if (!intersect(rays[k], hits[k])) hits[k].mesh = -1;

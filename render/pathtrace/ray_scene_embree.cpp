@@ -348,9 +348,10 @@ void EmbreeScene::intersect_packet(std::span<const Ray> rays, std::span<RayHit> 
   std::fill_n(query.hit.geomID, kRayPacket, RTC_INVALID_GEOMETRY_ID);
   rtcIntersect8(lanes.valid.data(), scene_, &context, &query);
   for (std::size_t k = 0; k < rays.size(); ++k) {
+    hits[k] = {};
+    if (query.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
     hits[k] = {query.ray.tfar[k], query.hit.u[k], query.hit.v[k], -1, -1};
-    if (query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
-      name_triangle(query.hit.geomID[k], query.hit.primID[k], hits[k]);
+    name_triangle(query.hit.geomID[k], query.hit.primID[k], hits[k]);
   }
 }
 

@@ -45,9 +45,10 @@ struct alignas(32) Lanes {
   explicit Lanes(std::size_t count) { std::fill_n(valid.begin(), count, -1); }
 };
 
+/// Empty lanes hold the last ray again: no arithmetic with what happens to be in memory. rays: one at least.
 inline void set_rays(std::span<const Ray> rays, RTCRay8& out) {
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    const Ray& ray = rays[k];
+  for (std::size_t k = 0; k < kRayPacket; ++k) {
+    const Ray& ray = rays[std::min(k, rays.size() - 1)];
     out.org_x[k] = ray.origin.x();
     out.org_y[k] = ray.origin.y();
     out.org_z[k] = ray.origin.z();

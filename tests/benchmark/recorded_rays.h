@@ -9,7 +9,7 @@
 
 namespace softreel {
 
-/// Passes all calls on and keeps the rays, in their order. One thread only.
+/// Passes all calls on, packets one ray at a time, and keeps the rays in their order. One thread only.
 class RecordingScene : public RayScene {
  public:
   explicit RecordingScene(std::unique_ptr<RayScene> rays) : rays_(std::move(rays)) {}

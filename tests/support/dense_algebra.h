@@ -13,7 +13,7 @@ struct EigenPairs {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
-/// A: symmetric; B: positive definite.
+/// A: symmetric; B: symmetric, positive definite.
 EigenPairs generalized_eigenpairs(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
 /// X of A X = B, for a regular A.

@@ -1,4 +1,5 @@
-// Rays that are shot together find what each finds alone, whatever company it is in.
+// Rays that are shot together find what each finds alone, whatever company it is in, but for triangles at equal
+// distances.
 #include <cmath>
 #include <random>
 
