@@ -23,16 +23,23 @@ void PathGroup::shoot_camera_rays() {
       CHECK(end - first < kRayPacket);
       rays[end - first] = paths_[end].ray();
     }
-    picture_.rays->intersect_packet({rays.data(), end - first}, {hits_.data() + first, end - first});
+    if (end - first == 1)
+      shoot_ray(first);  // a packet of one takes longer
+    else
+      picture_.rays->intersect_packet({rays.data(), end - first}, {hits_.data() + first, end - first});
     for (std::size_t k = first; k < end; ++k) prefetch_hit_triangle(hits_[k]);
   }
 }
 
 void PathGroup::shoot_rays() {
   for (std::size_t k = 0; k < alive_.size(); ++k) {
-    if (!picture_.rays->intersect(alive_[k]->ray(), hits_[k])) hits_[k].mesh = -1;
+    shoot_ray(k);
     prefetch_hit_triangle(hits_[k]);
   }
+}
+
+void PathGroup::shoot_ray(std::size_t k) {
+  if (!picture_.rays->intersect(alive_[k]->ray(), hits_[k])) hits_[k].mesh = -1;
 }
 
 void PathGroup::scatter() {

@@ -17,7 +17,7 @@ namespace softreel {
 
 /// Most paths of a group. 8 to 64 of them took the same time.
 inline constexpr std::size_t kGroupPaths = 32;
-static_assert(kGroupPaths % kRayPacket == 0);
+static_assert(kGroupPaths >= kRayPacket);
 
 class PathGroup {
  public:
@@ -41,6 +41,7 @@ class PathGroup {
  private:
   void shoot_camera_rays();
   void shoot_rays();
+  void shoot_ray(std::size_t k);  ///< of the k-th one alive
   /// What the alive paths' rays hit, they go on from.
   void scatter();
   void end_last_rays();
