@@ -11,14 +11,15 @@ add_library(bench_parts STATIC
   scale/scale.cpp
   stability/abuse_study.cpp stability/abuses.cpp stability/bar_body.cpp stability/body_picture.cpp
   stability/held_pose.cpp stability/pose_study.cpp stability/scramble_study.cpp stability/stability.cpp
-  stability/watch.cpp "${PROJECT_SOURCE_DIR}/tests/support/scrambled.cpp"
+  stability/watch.cpp
   steppers/descent_memory.cpp steppers/direct_stepper.cpp steppers/projective_stepper.cpp steppers/rival_body.cpp
   steppers/softreel_stepper.cpp steppers/xpbd_stepper.cpp)
 target_link_libraries(bench_parts PUBLIC bar_problem rivals softreel_core fmt::fmt
                       PRIVATE softreel_tool softreel_warnings)
 target_include_directories(bench_parts PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(bench_parts PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-softreel_precompile(bench_parts ${SOFTREEL_COMMON_HEADERS})
+softreel_precompile_as(bench_parts softreel_core)
+softreel_compile_in_groups(bench_parts 5)
 
 add_executable(softreel_bench bench_main.cpp)
 target_link_libraries(softreel_bench PRIVATE bench_parts softreel_warnings)

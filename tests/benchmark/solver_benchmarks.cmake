@@ -1,6 +1,7 @@
 # Benchmarks of the linear solver; included by tests/benchmark/CMakeLists.txt.
 set(here "${CMAKE_CURRENT_LIST_DIR}")
-add_library(bar_problem STATIC "${here}/bar_problem.cpp" "${PROJECT_SOURCE_DIR}/tests/support/elastic_box.cpp")
+add_library(bar_problem STATIC "${here}/bar_problem.cpp" "${PROJECT_SOURCE_DIR}/tests/support/elastic_box.cpp"
+            "${PROJECT_SOURCE_DIR}/tests/support/scrambled.cpp")
 target_link_libraries(bar_problem PUBLIC softreel_core PRIVATE softreel_warnings)
 target_include_directories(bar_problem PUBLIC "${PROJECT_SOURCE_DIR}")
 
