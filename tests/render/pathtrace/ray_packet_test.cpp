@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "render/pathtrace/scene_rays.h"
+#include "render/pathtrace/tree_fit.h"
 #include "render/scene/ground_mesh.h"
 #include "tests/render/test_scenes.h"
 
@@ -102,6 +103,9 @@ TEST(RayPacket, ChangesNothingInFittedTrees) {
   std::vector<MotionMesh> meshes = ball_and_square(false);
   meshes[0].rest_positions = std::make_shared<const std::vector<Vec3f>>(meshes[0].times[0].positions);
   for (Vec3f& p : meshes[0].times[0].positions) p.x() += 0.2f * p.y();
+  const TreeFit fit(*meshes[0].rest_positions, meshes[0].triangles);
+  ASSERT_TRUE(is_worth_fitting(fit.looseness(meshes[0].times[0].positions), meshes[0].triangles.size(), kOnePath))
+      << "the trees would be of the frame";
   expect_company_changes_nothing_among(meshes);
 }
 
