@@ -189,6 +189,7 @@ CacheUse::CacheUse(const Cache& cache, const std::string& shot_path, const std::
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) return;  // a cache that cannot be written: nobody can remove anything either
   ::flock(descriptor_, LOCK_EX);
+  remove_at_sudden_end(path_);
   append(fmt::format("{}\n{}\n{}\n", owner_, real(shot_path).string(), host_name()));
 }
 
@@ -219,6 +220,7 @@ CacheUse::~CacheUse() {
   remove_dead_locks(cache_);
   for (const Use& use : read_uses(cache_))  // of earlier runs of the same shot that were killed
     if (use.owner == owner_ && !use.running && use.file.string().ends_with(kRunning)) fs::remove(use.file, none);
+  keep_at_sudden_end(path_);
   fs::rename(path_, uses_folder(cache_) / owner_, none);
   ::close(descriptor_);
 }

@@ -14,7 +14,7 @@
 namespace softreel {
 namespace {
 
-/// The files that go with locks that this process holds.
+/// The files that go with this process: those of the locks that it holds, and its marks.
 struct FilesToRemove {
   std::timed_mutex mutex;
   std::set<std::string> paths;
@@ -101,6 +101,16 @@ FileLock&& FileLock::remove_at_end(std::string path) && {
   const std::lock_guard lock(files_to_remove().mutex);
   files_to_remove().paths.insert(removed_);
   return std::move(*this);
+}
+
+void remove_at_sudden_end(const std::string& path) {
+  const std::lock_guard lock(files_to_remove().mutex);
+  files_to_remove().paths.insert(path);
+}
+
+void keep_at_sudden_end(const std::string& path) {
+  const std::lock_guard lock(files_to_remove().mutex);
+  files_to_remove().paths.erase(path);
 }
 
 void remove_lock_files_at_once() {

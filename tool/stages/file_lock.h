@@ -39,6 +39,10 @@ class FileLock {
   std::string removed_;
 };
 
+/// A file that means nothing once this process has ended goes with the locks' files; until it is told to stay.
+void remove_at_sudden_end(const std::string& path);
+void keep_at_sudden_end(const std::string& path);
+
 /// Removes the files that go with their locks, for a process that is about to end without destroying them. None is
 /// removed or taken away after this: whoever destroys such a lock waits for the end.
 void remove_lock_files_at_once();

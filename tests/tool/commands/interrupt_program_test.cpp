@@ -164,24 +164,25 @@ TEST_P(Interrupt, ByTerminationEndsSoonAndLeavesNothing) {
 /// Reading a large file holds the lock on its result, and no signal is looked at meanwhile.
 using InterruptTwice = Interrupt;
 
-TEST_P(InterruptTwice, EndsAtOnceAndLeavesNoLock) {
+TEST_P(InterruptTwice, EndsAtOnceAndLeavesNoLockAndNoMarkOfARun) {
   RunningProgram program("interrupt_twice",
                          words_of(fmt::format("softreel {} {}/shot.toml --output {} {}", GetParam().command, folder_,
                                               output(), GetParam().options)));
-  const auto has_lock = [&] {
+  const auto has = [&](std::string_view part) {
     if (!exists(output())) return false;
     const std::vector<std::string> names = files_under(output());
     return std::any_of(names.begin(), names.end(),
-                       [](const std::string& name) { return name.find("/locks/") != std::string::npos; });
+                       [&](const std::string& name) { return name.find(part) != std::string::npos; });
   };
-  wait_until(program, has_lock);
-  ASSERT_TRUE(has_lock()) << "the check can fail";
+  wait_until(program, [&] { return has("/locks/") && has(".running"); });
+  ASSERT_TRUE(has("/locks/") && has(".running")) << "the check can fail";
   program.signal(SIGINT);
   pause(milliseconds(20));
   EXPECT_FALSE(program.has_ended()) << "the second signal came too late to test anything";
   program.signal(SIGINT);
   EXPECT_EQ(program.wait().status, 130);
-  EXPECT_FALSE(has_lock());
+  EXPECT_FALSE(has("/locks/"));
+  EXPECT_FALSE(has(".running"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Phases, InterruptTwice, ::testing::Values(kPhases[0]),
