@@ -1,25 +1,13 @@
-# softreel_precompile(TARGET HEADERS...): the headers that most sources of a target include, compiled once, which halves
-# the time that a source takes. Sources include what they need all the same: tool/test --includes finds what they forget.
-# g++ compiles with the level of optimisation that its precompiled header was made with, and ignores another one: a level
-# is given to a whole target, never to a source.
+# softreel_precompile(TARGET PRIVATE HEADERS... | REUSE_FROM OTHER): the headers that most sources of a target include,
+# compiled once, which halves the time that a source takes; or those of a target that is compiled with equal options.
+# Sources include what they need all the same: tool/test --includes finds what they forget. g++ compiles with the level
+# of optimisation that its precompiled header was made with, and ignores another one: a level is given to a whole target,
+# never to a source.
 function(softreel_precompile target)
   if(NOT SOFTREEL_PRECOMPILE)
     return()
   endif()
-  target_precompile_headers(${target} PRIVATE ${ARGN})
-  softreel_with_precompiled(${target})
-endfunction()
-
-# softreel_precompile_as(TARGET OTHER): with the precompiled headers of a target that is compiled with equal options.
-function(softreel_precompile_as target other)
-  if(NOT SOFTREEL_PRECOMPILE)
-    return()
-  endif()
-  target_precompile_headers(${target} REUSE_FROM ${other})
-  softreel_with_precompiled(${target})
-endfunction()
-
-function(softreel_with_precompiled target)
+  target_precompile_headers(${target} ${ARGN})
   # With them g++ 12 takes the system headers' own code for ours, and warns of std::string wrongly (its bug 105651).
   target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow)
   if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
