@@ -22,7 +22,7 @@ softreel_precompile(bench_parts REUSE_FROM softreel_core)
 softreel_compile_in_groups(bench_parts 5)
 
 add_executable(softreel_bench bench_main.cpp)
-target_link_libraries(softreel_bench PRIVATE bench_parts softreel_huge_pages softreel_warnings)
+target_link_libraries(softreel_bench PRIVATE bench_parts softreel_warnings)
 
 # Its points of scale are processes of their own.
 add_executable(scale_point scale_point.cpp)

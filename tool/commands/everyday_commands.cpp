@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tool/commands/shared_options.h"
 #include "tool/report/version.h"
 
 namespace softreel {
@@ -66,10 +67,7 @@ void add_reference_commands(CLI::App& app, EverydayOptions& everyday, std::funct
       ->option_text("FIELD");
   explain->add_option("--shot", options.shot, "say its value in this shot, and the file and line it comes from")
       ->option_text("SHOT");
-  explain->add_option("--set", options.sets, "with this field of the shot set (repeatable)")
-      ->option_text("PATH=VALUE")
-      ->expected(1)
-      ->take_all();
+  add_field_options(*explain, options.sets);
   explain->add_flag("--json", options.json, "as JSON");
   explain->callback([&] { run = [&everyday] { return run_explain(everyday.explaining); }; });
 

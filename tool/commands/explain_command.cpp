@@ -35,7 +35,8 @@ int run_explain(const ExplainOptions& options) {
   }
   if (options.shot.empty() && !options.sets.empty())
     throw input_error(
-        "--set: there is no shot to set a field of.\n  Accepted: --set beside --shot SHOT. Name the shot.");
+        "--set, --quality: there is no shot that they could change.\n  Accepted: both beside --shot SHOT. Name the "
+        "shot.");
   const FieldExplanation explanation = explain(options.field);
   std::vector<FieldValue> values;
   if (!options.shot.empty() && !explanation.text.is_table) {

@@ -2,16 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tool/commands/shared_options.h"
+
 namespace softreel {
 namespace {
 
 void add_work_options(CLI::App& farm, FarmOptions& options) {
   farm.add_option("shots", options.shots, "shot files (TOML)")->required()->option_text("SHOT ...");
-  farm.add_option("--set", options.shot.sets, "set a field of the shots, e.g. body.mesh=my.obj (repeatable)")
-      ->option_text("PATH=VALUE")
-      ->expected(1)
-      ->take_all()
-      ->group("Shot");
+  add_field_options(farm, options.shot.sets);
   farm.add_option("--frames", options.shot.frames, "frames to make: FIRST-LAST or one [all of the shot]")
       ->option_text("RANGE")
       ->group("Shot");

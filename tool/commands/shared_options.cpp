@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "tool/shot/shot_load.h"
+#include "tool/starter/preset_library.h"
+
 namespace softreel {
 
 CLI::Validator length(const std::string& what) {
@@ -18,12 +21,23 @@ CLI::Validator length(const std::string& what) {
           "", what};
 }
 
-void add_place_options(CLI::App& command, ShotOptions& options) {
-  command.add_option("--set", options.sets, "set a field of the shot, e.g. body.mesh=my.obj (repeatable)")
+void add_field_options(CLI::App& command, std::vector<std::string>& sets) {
+  command.add_option("--set", sets, "set a field of the shot, e.g. body.mesh=my.obj (repeatable)")
       ->option_text("PATH=VALUE")
       ->expected(1)
       ->take_all()
       ->group("Shot");
+  // After --set, whose values replace what is in the list.
+  command
+      .add_option_function<std::string>(
+          "--quality",
+          [&sets](const std::string& name) { sets.push_back(fmt::format("{}={}", kQuality, quality_file(name))); },
+          "draft | preview | final, or a TOML file: how pictures are made; its values win over the shot's own")
+      ->group("Shot");
+}
+
+void add_place_options(CLI::App& command, ShotOptions& options) {
+  add_field_options(command, options.sets);
   command.add_option("--output", options.output, "output folder [output.directory of the shot]")
       ->option_text("DIR")
       ->group("Files");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -12,6 +13,9 @@ namespace softreel {
 /// Accepts finite numbers above 0, of a length or of `what` else; CLI11's own check lets NaN pass and prints its bounds
 /// with 300 digits.
 CLI::Validator length(const std::string& what = "length");
+
+/// --set and --quality: fields of a shot. sets are kept by reference; --quality is one of them.
+void add_field_options(CLI::App& command, std::vector<std::string>& sets);
 
 /// Where results lie, and with which fields. options are kept by reference, here and below.
 void add_place_options(CLI::App& command, ShotOptions& options);

@@ -141,6 +141,17 @@ std::string set_example(const FieldText& text, const std::string& example) {
   return plain ? fmt::format("--set {}={}", path, example) : fmt::format("--set '{}={}'", path, example);
 }
 
+/// Which layer a value was written in (`softreel explain layers`).
+const char* layer_of(const Origin& origin, const std::string& shot, const std::vector<Override>& overrides) {
+  if (origin.line == 0) return "--set";
+  const auto is_in = [&origin](const std::string& file) {
+    return std::filesystem::path(origin.file).lexically_normal() == std::filesystem::path(file).lexically_normal();
+  };
+  if (is_in(shot)) return "the shot itself";
+  const auto names_it = [&](const Override& one) { return one.path == kQuality && is_in(one.value); };
+  return std::any_of(overrides.begin(), overrides.end(), names_it) ? "--quality" : "a preset that it uses";
+}
+
 }  // namespace
 
 FieldExplanation explain(const std::string& path) {
@@ -156,7 +167,6 @@ FieldExplanation explain(const std::string& path) {
 std::vector<FieldValue> field_values_in(const std::string& path, const FieldText& text, const std::string& shot,
                                         const std::vector<Override>& overrides) {
   const TomlValue document = load_layers(shot, overrides);
-  const std::string own = std::filesystem::path(shot).lexically_normal().string();
   const std::vector<FieldPlace> places = field_places(text.path, document);
   const bool one_only = is_place(path, places);
   std::vector<FieldValue> values;
@@ -167,11 +177,7 @@ std::vector<FieldValue> field_values_in(const std::string& path, const FieldText
       continue;
     }
     const Origin& origin = place.value->origin;
-    const bool is_own = std::filesystem::path(origin.file).lexically_normal().string() == own;
-    values.push_back({place.path, to_text(*place.value), to_string(origin),
-                      origin.line == 0 ? "--set"
-                      : is_own         ? "the shot itself"
-                                       : "a preset that it uses"});
+    values.push_back({place.path, to_text(*place.value), to_string(origin), layer_of(origin, shot, overrides)});
   }
   return values;
 }

@@ -44,7 +44,9 @@ const std::vector<Topic>& topics() {
         {"SHOT.mp4", "Their movie, where ffmpeg is installed."},
         {"SHOT.resolved.toml", "The shot that a run used, with presets, --set and defaults written out."},
         {"SHOT.report.json", "What a run did, and where its time went."},
-        {".cache", "In the output folder (or --cache DIR): results that later runs skip; `softreel clean` empties it."},
+        {".cache",
+         "In the output folder (or --cache DIR): results that later runs skip; `softreel clean SHOT` removes what the "
+         "shot no longer needs, `--all` everything."},
         {"golden", "Beside a shot: the pictures that `softreel golden` compares with."}}},
       {"units",
        "What the numbers of a shot count.",
@@ -62,6 +64,7 @@ const std::vector<Topic>& topics() {
        {{"default", "What `softreel explain FIELD` says; the field need not be given."},
         {"use", "Presets that the shot names, in their order, each with those that it names underneath."},
         {"the shot", "Its own lines."},
+        {"--quality NAME", "Those of draft, preview or final, or of any file of fields."},
         {"--set PATH=VALUE", "Overrides on the command line, in their order."}}},
       {"log",
        "What is said on standard error, and how much of it.",

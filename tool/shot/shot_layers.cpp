@@ -29,6 +29,11 @@ struct PresetChain {
   std::vector<std::string> files;  ///< as given
 };
 
+bool exists(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
+
 std::string real_path(const std::string& path) {
   std::error_code ignored;
   const auto real = std::filesystem::weakly_canonical(path, ignored);
@@ -94,8 +99,7 @@ TomlValue load_file(const std::string& file, const TomlValue* use_instead, Prese
   if (use != nullptr)
     for (const auto& [preset, origin] : used_presets(*use)) {
       check_cycle(chain, preset, origin);
-      std::error_code ignored;
-      if (!std::filesystem::exists(preset, ignored))
+      if (!exists(preset))
         throw input_error(
             fmt::format("{}: use = \"{}\" is wrong because this file does not exist.\n  Accepted: the path of "
                         "a preset, relative to the file that says it. Correct the path.",
@@ -106,6 +110,17 @@ TomlValue load_file(const std::string& file, const TomlValue* use_instead, Prese
   merge_layer(document, std::move(own));
   chain.files.pop_back();
   return document;
+}
+
+/// The layer that lies on top of the shot's own.
+TomlValue load_quality(const std::string& file) {
+  if (!exists(file))
+    throw input_error(
+        fmt::format("--quality {}: this file does not exist.\n  Accepted: draft, preview, final, or the "
+                    "path of a TOML file with fields of a shot. Correct it.",
+                    file));
+  PresetChain chain;
+  return load_file(file, nullptr, chain);
 }
 
 }  // namespace
@@ -137,7 +152,9 @@ TomlValue load_layers(const std::string& path, const std::vector<Override>& over
   PresetChain chain;
   TomlValue document = load_file(path, use ? &*use : nullptr, chain);
   for (const Override& one : overrides)
-    if (one.path != "use") apply_override(document, one);
+    if (one.path == kQuality) merge_layer(document, load_quality(one.value));
+  for (const Override& one : overrides)
+    if (one.path != "use" && one.path != kQuality) apply_override(document, one);
   return document;
 }
 

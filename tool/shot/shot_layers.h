@@ -13,7 +13,8 @@ namespace softreel {
 /// layer's removes the lower layer's. Places of writing stay with the values. `pattern`: path of the two in the schema.
 void merge_layer(TomlValue& base, TomlValue over, const std::string& pattern = {});
 
-/// The file with the presets that it names in `use`, and those that they name, underneath; `use` itself is gone.
+/// The file with the presets that it names in `use`, and those that they name, underneath; `use` itself is gone. On top
+/// of it the file that an override of the path kQuality names, then the other overrides.
 /// Throws input_error for files that cannot be read, cycles, and files written for a newer program.
 TomlValue load_layers(const std::string& path, const std::vector<Override>& overrides);
 

@@ -17,10 +17,14 @@ struct Override {
   std::string option = "--set";  ///< that gave it, as messages name it
 };
 
+/// Path of an override that is no field: its value is a file whose values win over the shot's own (--quality).
+inline constexpr const char* kQuality = "quality";
+
 /// Splits "path=value". Throws input_error if there is no '='.
 Override parse_override(const std::string& text);
 
-/// Reads a shot; presets named in `use` come first, then the file's own values, then the overrides. Paths in a file are
+/// Reads a shot; presets named in `use` come first, then the file's own values, then those of kQuality's file, then the
+/// overrides. Paths in a file are
 /// relative to it, paths in overrides to the working directory. Throws input_error with file, line and column, the
 /// value, what is accepted, and the nearest known name for unknown ones.
 Shot load_shot(const std::string& path, const std::vector<Override>& overrides);

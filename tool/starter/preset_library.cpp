@@ -81,6 +81,11 @@ std::string material_file(const std::string& name) {
   return file_of("--material", name, fs::path(library_or_throw("--material", name)) / "materials");
 }
 
+std::string quality_file(const std::string& name) {
+  if (name.ends_with(".toml")) return name;
+  return file_of("--quality", name, fs::path(library_or_throw("--quality", name)) / "quality");
+}
+
 std::string preset_file(const std::string& name) {
   std::error_code ignored;
   if (name.ends_with(".toml") && fs::is_regular_file(name, ignored)) return name;

@@ -18,6 +18,10 @@ std::vector<std::string> library_presets();
 /// The file of a material. Throws input_error for an unknown name, naming the nearest, and where there is no library.
 std::string material_file(const std::string& name);
 
+/// The file of a quality: of the library by its name (draft, preview, final), or any file by its path, which ends in
+/// .toml and is read later. Throws input_error.
+std::string quality_file(const std::string& name);
+
 /// The file of a preset: of the library by its name, or any shot by its path. Throws input_error.
 std::string preset_file(const std::string& name);
 

@@ -29,6 +29,24 @@ TEST(Explain, SaysWhatAFieldIsAndWhereItsValueComesFrom) {
   EXPECT_EQ(report["unit"], "paths a pixel");
 }
 
+TEST(Explain, SaysWhatAQualityChanges) {
+  const std::string shot = SOFTREEL_SOURCE_DIR "/presets/first_pull.toml";
+  const auto value = [&](const std::string& field, const std::string& options) {
+    const Outcome outcome = run(fmt::format("softreel explain {} --shot {} {} --json", field, shot, options));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out)["values"][0]["value"].get<std::string>();
+  };
+  EXPECT_EQ(value("render.width", "--quality draft"), "480");
+  EXPECT_EQ(value("render.width", "--quality final"), "1920");
+  EXPECT_EQ(value("render.width", "--set render.width=5 --quality final"), "5");
+  EXPECT_EQ(value("render.width", "--quality " SOFTREEL_SOURCE_DIR "/presets/quality/final.toml"), "1920");
+  const Outcome said = run("softreel explain render.width --quality draft --shot " + shot);
+  EXPECT_NE(said.out.find("quality/draft.toml:3:9, --quality)"), std::string::npos) << said.out;
+  const Outcome unknown = run("softreel render " + shot + " --quality darft");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("Did you mean draft?"), std::string::npos) << unknown.err;
+}
+
 TEST(Explain, KnowsTopicsAndRefusesWhatItDoesNotKnow) {
   EXPECT_NE(run("softreel explain exit-status").out.find("130"), std::string::npos);
   EXPECT_NE(run("softreel explain").out.find("exit-status"), std::string::npos);

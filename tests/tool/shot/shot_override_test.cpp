@@ -68,6 +68,23 @@ TEST_F(SetOverrides, ReplaceThePresets) {
   EXPECT_EQ(load("use = [\"one.toml\"]\n" + body(""), {"use=[\"two.toml\"]"}).render.params.samples, 2);
 }
 
+TEST_F(SetOverrides, LieAboveTheQualityAndThatAboveTheShot) {
+  write("below.toml", "[render]\nwidth = 1\nmax_bounces = 1\nshutter = 0.1\nsamples = 1\n");
+  write("finer.toml", "use = [\"below.toml\"]\n[render]\nwidth = 2\nshutter = 0.2\n[body.a]\nedge = 0.5\n");
+  const std::string text = body("tets = 5\n") + "[render]\nwidth = 3\nmax_bounces = 3\nheight = 3\n";
+  const Shot shot = load(text, {"render.width=4", "quality=finer.toml"});
+  EXPECT_EQ(shot.render.params.width, 4) << "--set wins, wherever it stands";
+  EXPECT_EQ(shot.render.params.height, 3) << "the quality says nothing of it";
+  EXPECT_EQ(shot.render.params.max_bounces, 1) << "what a quality uses lies above the shot with it";
+  EXPECT_EQ(shot.render.params.samples, 1);
+  EXPECT_EQ(shot.bodies[0].edge, 0.5);
+  EXPECT_EQ(shot.bodies[0].tets, 0) << "edge and tets exclude each other";
+  const std::string said = message(text, {"quality=none.toml"});
+  EXPECT_NE(said.find("--quality none.toml: this file does not exist"), std::string::npos) << said;
+  write("wrong.toml", "[render]\nwidht = 3\n");
+  EXPECT_NE(message(text, {"quality=wrong.toml"}).find("wrong.toml:2:"), std::string::npos);
+}
+
 /// An override that leads nowhere and parts of its message.
 struct WrongOverride {
   const char* set;
