@@ -6,7 +6,7 @@
 #include "tool/help/completion.h"
 #include "tool/help/man_page.h"
 #include "tool/report/version.h"
-#include "tool/starter/preset_library.h"
+#include "tool/shot/preset_library.h"
 
 namespace softreel {
 namespace {

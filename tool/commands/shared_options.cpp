@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "tool/shot/shot_load.h"
-#include "tool/starter/preset_library.h"
 
 namespace softreel {
 
@@ -30,8 +29,7 @@ void add_field_options(CLI::App& command, std::vector<std::string>& sets) {
   // After --set, whose values replace what is in the list.
   command
       .add_option_function<std::string>(
-          "--quality",
-          [&sets](const std::string& name) { sets.push_back(fmt::format("{}={}", kQuality, quality_file(name))); },
+          "--quality", [&sets](const std::string& name) { sets.push_back(fmt::format("{}={}", kQuality, name)); },
           "draft | preview | final, or a TOML file: how pictures are made; its values win over the shot's own")
       ->group("Shot");
 }

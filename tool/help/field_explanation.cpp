@@ -11,6 +11,7 @@
 #include "core/base/nearest_name.h"
 #include "tool/help/field_examples.h"
 #include "tool/help/field_places.h"
+#include "tool/shot/preset_library.h"
 #include "tool/shot/schema_tables.h"
 #include "tool/shot/shot_layers.h"
 #include "tool/stages/json_text.h"
@@ -148,7 +149,7 @@ const char* layer_of(const Origin& origin, const std::string& shot, const std::v
     return std::filesystem::path(origin.file).lexically_normal() == std::filesystem::path(file).lexically_normal();
   };
   if (is_in(shot)) return "the shot itself";
-  const auto names_it = [&](const Override& one) { return one.path == kQuality && is_in(one.value); };
+  const auto names_it = [&](const Override& one) { return one.path == kQuality && is_in(quality_file(one.value)); };
   return std::any_of(overrides.begin(), overrides.end(), names_it) ? "--quality" : "a preset that it uses";
 }
 

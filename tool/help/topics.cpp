@@ -42,7 +42,7 @@ const std::vector<Topic>& topics() {
        {{"SHOT.toml", "A shot. `softreel new` writes one, `softreel fields` lists what it may say."},
         {"SHOT.####.png, SHOT.####.exr", "Pictures in the output folder, which is output.directory or --output."},
         {"SHOT.mp4", "Their movie, where ffmpeg is installed."},
-        {"SHOT.resolved.toml", "The shot that a run used, with presets, --set and defaults written out."},
+        {"SHOT.resolved.toml", "The shot that a run used, with presets, --quality, --set and defaults written out."},
         {"SHOT.report.json", "What a run did, and where its time went."},
         {".cache",
          "In the output folder (or --cache DIR): results that later runs skip; `softreel clean SHOT` removes what the "

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "tool/shot/codecs.h"
+#include "tool/shot/preset_library.h"
 #include "tool/shot/schema.h"
 #include "tool/shot/schema_tables.h"
 
@@ -28,11 +29,6 @@ void erase_key(TomlValue& table, const std::string& key) {
 struct PresetChain {
   std::vector<std::string> files;  ///< as given
 };
-
-bool exists(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
-}
 
 std::string real_path(const std::string& path) {
   std::error_code ignored;
@@ -99,46 +95,42 @@ TomlValue load_file(const std::string& file, const TomlValue* use_instead, Prese
   if (use != nullptr)
     for (const auto& [preset, origin] : used_presets(*use)) {
       check_cycle(chain, preset, origin);
-      if (!exists(preset))
+      std::error_code ignored;
+      if (!std::filesystem::exists(preset, ignored))
         throw input_error(
             fmt::format("{}: use = \"{}\" is wrong because this file does not exist.\n  Accepted: the path of "
                         "a preset, relative to the file that says it. Correct the path.",
                         to_string(origin), preset));
-      merge_layer(document, load_file(preset, nullptr, chain));
+      merge_layer(document, load_file(preset, nullptr, chain), Writing::OfUpper);
     }
   erase_key(own, "use");
-  merge_layer(document, std::move(own));
+  merge_layer(document, std::move(own), Writing::OfUpper);
   chain.files.pop_back();
   return document;
 }
 
 /// The layer that lies on top of the shot's own.
-TomlValue load_quality(const std::string& file) {
-  if (!exists(file))
-    throw input_error(
-        fmt::format("--quality {}: this file does not exist.\n  Accepted: draft, preview, final, or the "
-                    "path of a TOML file with fields of a shot. Correct it.",
-                    file));
+TomlValue load_quality(const std::string& name) {
   PresetChain chain;
-  return load_file(file, nullptr, chain);
+  return load_file(quality_file(name), nullptr, chain);
 }
 
 }  // namespace
 
-void merge_layer(TomlValue& base, TomlValue over, const std::string& pattern) {
+void merge_layer(TomlValue& base, TomlValue over, Writing tables, const std::string& pattern) {
   for (const Alternatives& group : alternatives()) {
     if (group.table != pattern) continue;
     const auto given = [&over](const std::string& name) { return over.find(name) != nullptr; };
     if (std::any_of(group.fields.begin(), group.fields.end(), given))
       for (const std::string& name : group.fields) erase_key(base, name);
   }
-  base.origin = over.origin;
+  if (tables == Writing::OfUpper) base.origin = over.origin;
   for (TomlEntry& entry : *over.table()) {
     TomlValue* below = base.find(entry.key);
     if (below == nullptr) {
       base.table()->push_back(std::move(entry));
     } else if (below->table() != nullptr && entry.value.table() != nullptr) {
-      merge_layer(*below, std::move(entry.value), entry_pattern(pattern, entry.key));
+      merge_layer(*below, std::move(entry.value), tables, entry_pattern(pattern, entry.key));
     } else {
       *below = std::move(entry.value);
     }
@@ -152,7 +144,7 @@ TomlValue load_layers(const std::string& path, const std::vector<Override>& over
   PresetChain chain;
   TomlValue document = load_file(path, use ? &*use : nullptr, chain);
   for (const Override& one : overrides)
-    if (one.path == kQuality) merge_layer(document, load_quality(one.value));
+    if (one.path == kQuality) merge_layer(document, load_quality(one.value), Writing::OfLower);
   for (const Override& one : overrides)
     if (one.path != "use" && one.path != kQuality) apply_override(document, one);
   return document;

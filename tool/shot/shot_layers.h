@@ -9,9 +9,12 @@
 
 namespace softreel {
 
+/// Which layer's place of writing a table has that both have: the file to be corrected where it lacks something.
+enum class Writing { OfLower, OfUpper };
+
 /// Puts `over` on top of `base`: tables merge, anything else replaces; of fields that exclude each other the upper
 /// layer's removes the lower layer's. Places of writing stay with the values. `pattern`: path of the two in the schema.
-void merge_layer(TomlValue& base, TomlValue over, const std::string& pattern = {});
+void merge_layer(TomlValue& base, TomlValue over, Writing tables, const std::string& pattern = {});
 
 /// The file with the presets that it names in `use`, and those that they name, underneath; `use` itself is gone. On top
 /// of it the file that an override of the path kQuality names, then the other overrides.

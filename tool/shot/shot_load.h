@@ -17,7 +17,8 @@ struct Override {
   std::string option = "--set";  ///< that gave it, as messages name it
 };
 
-/// Path of an override that is no field: its value is a file whose values win over the shot's own (--quality).
+/// Path of an override that is no field: its value names a file whose values win over the shot's own (--quality), as
+/// quality_file() finds it.
 inline constexpr const char* kQuality = "quality";
 
 /// Splits "path=value". Throws input_error if there is no '='.

@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "tool/shot/preset_library.h"
 #include "tool/shot/schema.h"
 #include "tool/shot/shot_layers.h"
 #include "tool/shot/shot_select.h"
 #include "tool/stages/constraint_stage.h"
 #include "tool/stages/weight_maps.h"
 #include "tool/starter/commented_document.h"
-#include "tool/starter/preset_library.h"
 #include "tool/starter/starter_stage.h"
 
 namespace softreel {

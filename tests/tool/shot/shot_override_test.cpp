@@ -80,9 +80,23 @@ TEST_F(SetOverrides, LieAboveTheQualityAndThatAboveTheShot) {
   EXPECT_EQ(shot.bodies[0].edge, 0.5);
   EXPECT_EQ(shot.bodies[0].tets, 0) << "edge and tets exclude each other";
   const std::string said = message(text, {"quality=none.toml"});
-  EXPECT_NE(said.find("--quality none.toml: this file does not exist"), std::string::npos) << said;
+  EXPECT_NE(said.find("--quality none.toml: "), std::string::npos) << said;
+  EXPECT_NE(said.find("draft, final, preview, or the path of a file"), std::string::npos) << said;
   write("wrong.toml", "[render]\nwidht = 3\n");
   EXPECT_NE(message(text, {"quality=wrong.toml"}).find("wrong.toml:2:"), std::string::npos);
+  const std::string bodiless = message("[render]\nwidth = 3\n", {"quality=draft"});
+  EXPECT_TRUE(bodiless.starts_with("s.toml:")) << "where the body is to be added: " << bodiless;
+}
+
+TEST_F(SetOverrides, OfTheLibrarysQualitiesChangePicturesOnly) {
+  const std::string text = body("tets = 5\n") + "[solver]\nsubsteps = 7\n";
+  const Shot plain = load(text);
+  for (const char* name : {"draft", "preview", "final"}) {
+    Shot shot = load(text, {std::string("quality=") + name});
+    EXPECT_NE(to_toml(shot), to_toml(plain)) << name;
+    shot.render = plain.render;
+    EXPECT_EQ(to_toml(shot), to_toml(plain)) << name;
+  }
 }
 
 /// An override that leads nowhere and parts of its message.

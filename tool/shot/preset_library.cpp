@@ -1,4 +1,4 @@
-#include "tool/starter/preset_library.h"
+#include "tool/shot/preset_library.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -30,12 +30,13 @@ std::vector<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-std::string file_of(const char* option, const std::string& name, const fs::path& folder) {
+/// others: what else the option takes.
+std::string file_of(const char* option, const std::string& name, const fs::path& folder, const char* others = "") {
   const std::vector<std::string> names = names_in(folder);
   if (std::find(names.begin(), names.end(), name) != names.end()) return (folder / (name + ".toml")).string();
   const std::string nearest = nearest_name(name, names);
-  throw input_error(fmt::format("{} {}: the library in {} has none of this name.\n  Accepted: {}.{}", option, name,
-                                folder.string(), fmt::join(names, ", "),
+  throw input_error(fmt::format("{} {}: the library in {} has none of this name.\n  Accepted: {}{}.{}", option, name,
+                                folder.string(), fmt::join(names, ", "), others,
                                 nearest.empty() ? "" : fmt::format(" Did you mean {}?", nearest)));
 }
 
@@ -82,8 +83,10 @@ std::string material_file(const std::string& name) {
 }
 
 std::string quality_file(const std::string& name) {
-  if (name.ends_with(".toml")) return name;
-  return file_of("--quality", name, fs::path(library_or_throw("--quality", name)) / "quality");
+  constexpr const char* kOthers = ", or the path of a file of fields that ends in .toml";
+  std::error_code ignored;
+  if (name.ends_with(".toml") && fs::exists(name, ignored)) return name;
+  return file_of("--quality", name, fs::path(library_or_throw("--quality", name)) / "quality", kOthers);
 }
 
 std::string preset_file(const std::string& name) {

@@ -19,7 +19,7 @@ std::vector<std::string> library_presets();
 std::string material_file(const std::string& name);
 
 /// The file of a quality: of the library by its name (draft, preview, final), or any file by its path, which ends in
-/// .toml and is read later. Throws input_error.
+/// .toml. Throws input_error.
 std::string quality_file(const std::string& name);
 
 /// The file of a preset: of the library by its name, or any shot by its path. Throws input_error.
