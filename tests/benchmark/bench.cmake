@@ -26,6 +26,6 @@ target_link_libraries(softreel_bench PRIVATE bench_parts softreel_warnings)
 
 # Its points of scale are processes of their own.
 add_executable(scale_point scale_point.cpp)
-target_link_libraries(scale_point PRIVATE bar_problem softreel_core softreel_huge_pages softreel_warnings fmt::fmt)
+target_link_libraries(scale_point PRIVATE bar_problem softreel_core softreel_warnings fmt::fmt)
 target_compile_definitions(scale_point PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 add_dependencies(softreel_bench scale_point)

@@ -25,9 +25,8 @@ inline constexpr const char* kQuality = "quality";
 Override parse_override(const std::string& text);
 
 /// Reads a shot; presets named in `use` come first, then the file's own values, then those of kQuality's file, then the
-/// overrides. Paths in a file are
-/// relative to it, paths in overrides to the working directory. Throws input_error with file, line and column, the
-/// value, what is accepted, and the nearest known name for unknown ones.
+/// overrides. Paths in a file are relative to it, paths in overrides to the working directory. Throws input_error with
+/// file, line and column, the value, what is accepted, and the nearest known name for unknown ones.
 Shot load_shot(const std::string& path, const std::vector<Override>& overrides);
 
 /// The shot of a whole document, with presets and overrides in it; `path` names it in messages. Throws input_error.
