@@ -9,11 +9,13 @@
 namespace softreel {
 
 void append_floats(const std::string& where, std::span<const Vec3> values, std::vector<float>& floats) {
-  floats.reserve(floats.size() + 3 * values.size());
+  const std::size_t begin = floats.size();
+  floats.resize(begin + 3 * values.size());
+  float* out = floats.data() + begin;
   for (std::size_t v = 0; v < values.size(); ++v)
     for (int k = 0; k < 3; ++k) {
-      floats.push_back(static_cast<float>(values[v][k]));
-      if (!std::isfinite(floats.back()))
+      *out = static_cast<float>(values[v][k]);
+      if (!std::isfinite(*out++))
         throw work_error(
             fmt::format("{}: vertex {} has the coordinate {}, which is no finite float32.\n"
                         "  Accepted: finite positions. Look for a vertex in the mesh file or a step of the simulation "

@@ -87,7 +87,8 @@ class Buffer {
 float difference(float rest, float position) {
   const float nearest = static_cast<float>(static_cast<double>(position) - static_cast<double>(rest));
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  for (const float candidate : {nearest, std::nextafter(nearest, -kInfinity), std::nextafter(nearest, kInfinity)})
+  if (rest + nearest == position) return nearest;  // most do, and neighbours take a call into libm each
+  for (const float candidate : {std::nextafter(nearest, -kInfinity), std::nextafter(nearest, kInfinity)})
     if (rest + candidate == position) return candidate;
   return nearest;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <optional>
 #include <string>
 
@@ -30,6 +31,7 @@ class PlyEncoder {
     write_header();
     write_vertices();
     for (std::size_t p = 0; p < mesh_.polygons.size(); ++p) write_face(p);
+    bytes_.resize(static_cast<std::size_t>(at_ - bytes_.data()));
     return std::move(bytes_);
   }
 
@@ -67,6 +69,20 @@ class PlyEncoder {
     if (has_face_textures_) header += fmt::format("property list {} double texcoord\n", count_type(2 * most_corners_));
     header += "end_header\n";
     bytes_.assign(header.begin(), header.end());
+    bytes_.resize(header.size() + vertex_bytes() + face_bytes());
+    at_ = bytes_.data() + header.size();
+  }
+
+  std::size_t vertex_bytes() const {
+    const std::size_t doubles = 3 + (normals_.empty() ? 0 : 3) + (vertex_textures_ ? 2 : 0);
+    return positions_.size() * (doubles * sizeof(double) + mesh_.groups.size());
+  }
+
+  /// At most: a face without all of its texture coordinates has none.
+  std::size_t face_bytes() const {
+    const std::size_t counts = mesh_.polygons.size() * sizeof(std::uint32_t) * (has_face_textures_ ? 2 : 1);
+    const std::size_t corner = sizeof(Index) + (has_face_textures_ ? 2 * sizeof(double) : 0);
+    return counts + mesh_.polygons.corner_vertices.size() * corner;
   }
 
   void write_vertices() {
@@ -109,8 +125,8 @@ class PlyEncoder {
 
   template <typename T>
   void put(T value) {
-    const auto raw = std::bit_cast<std::array<std::uint8_t, sizeof(T)>>(value);
-    bytes_.insert(bytes_.end(), raw.begin(), raw.end());
+    std::memcpy(at_, &value, sizeof(T));
+    at_ += sizeof(T);
   }
 
   const SurfaceMesh& mesh_;
@@ -119,6 +135,7 @@ class PlyEncoder {
   bool has_face_textures_ = false;
   Index most_corners_ = 0;
   std::vector<std::uint8_t> bytes_;
+  std::uint8_t* at_ = nullptr;  ///< where the next value goes
 };
 
 }  // namespace

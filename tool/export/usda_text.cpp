@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include <fmt/compile.h>
 #include <fmt/ranges.h>
 
 namespace softreel {
@@ -66,13 +67,16 @@ std::string usda_quoted(const std::string& text) {
 }
 
 std::string usda_vectors(std::span<const float> values, std::size_t components) {
-  std::string text = "[";
-  text.reserve(12 * values.size() + 2);
+  fmt::memory_buffer text;
+  text.reserve(12 * values.size() + 4);
+  const auto out = std::back_inserter(text);
+  text.push_back('[');
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool first = i % components == 0;
-    fmt::format_to(std::back_inserter(text), "{}{}", first ? (i == 0 ? "(" : "), (") : ", ", values[i]);
+    fmt::format_to(out, FMT_COMPILE("{}{}"), first ? (i == 0 ? "(" : "), (") : ", ", values[i]);
   }
-  return text + (values.empty() ? "]" : ")]");
+  fmt::format_to(out, FMT_COMPILE("{}"), values.empty() ? "]" : ")]");
+  return fmt::to_string(text);
 }
 
 std::string usda_integers(std::span<const Index> values) {
