@@ -14,7 +14,7 @@ constexpr int kMostSteps = 1000;
 /// From here on scattering is isotropic: at g = 0.9, 24 scatterings leave 8 % of the first direction.
 constexpr int kIsotropicStart = 24;
 /// Walks of this length may be ended by chance.
-constexpr int kRouletteStart = 16;
+constexpr int kWalkRouletteStart = 16;
 /// Surfaces of one body on one flight; beyond them the mesh is taken to be broken.
 constexpr int kMostSurfaces = 64;
 
@@ -112,7 +112,7 @@ class Walk {
   /// walks that carry next to nothing take all their steps.
   bool survives(int step) {
     if (!(scattered_.cwiseProduct(ratio_).maxCoeff() > 0)) return false;
-    if (step < kRouletteStart) return true;
+    if (step < kWalkRouletteStart) return true;
     const Vec3f likely = (ratio_ / ratio_.maxCoeff()).cwiseSqrt().cwiseSqrt();
     const float chance = std::min(1.0f, scattered_.cwiseProduct(likely).maxCoeff());
     if (numbers_.next() >= chance) return false;

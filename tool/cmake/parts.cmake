@@ -53,6 +53,7 @@ function(softreel_add_part owner name)
   target_link_libraries(${module} PRIVATE softreel_part_${name} Eigen3::Eigen fmt::fmt softreel_numerics
                         softreel_warnings)
   target_link_options(${module} PRIVATE LINKER:--no-undefined)
+  softreel_compile_in_groups(${module} 8)
   install(TARGETS ${module} LIBRARY DESTINATION "${SOFTREEL_PART_FOLDER}")
   add_dependencies(${owner} ${module})
 endfunction()
