@@ -85,9 +85,36 @@ def check_file(path):
     return ["%s:%d: %s" % (path, number, what) for number, what in found]
 
 
+def named_types(path):
+    """What the linker takes for one type wherever it is defined: (its whole name, its line)."""
+    spaces, found = [], []
+    with open(os.path.join(ROOT, path), encoding="utf-8") as f:
+        for number, line in enumerate(f, 1):
+            match = re.match(r"namespace\s*([\w:]*)\s*{", line)
+            if match:
+                spaces.append(match.group(1))
+            elif line.startswith("}  // namespace"):
+                spaces.pop()
+            match = re.match(r"(?:struct|class|union|enum(?: class)?) (\w+)(?: final)? [:{]", line)
+            if match and "" not in spaces:  # an anonymous namespace keeps it apart
+                found.append(("::".join(spaces + [match.group(1)]), number))
+    return found
+
+
+def types_defined_twice(paths):
+    """Two types of one name in one program: one's destructor is called for the other, and no compiler says so."""
+    places = {}
+    for path in paths:
+        for name, number in named_types(path):
+            places.setdefault(name, []).append("%s:%d" % (path, number))
+    return ["%s: %s is defined at %s too" % (where[1], name, where[0])
+            for name, where in sorted(places.items()) if len(where) > 1]
+
+
 def main():
     paths = sources()
     problems = [problem for path in paths for problem in check_file(path)]
+    problems += types_defined_twice(paths)
     formatted = subprocess.run(["clang-format", "--dry-run", "-Werror"] + paths, cwd=ROOT, capture_output=True, text=True)
     problems += [line for line in formatted.stderr.splitlines() if "error:" in line][:20]
     for problem in problems:

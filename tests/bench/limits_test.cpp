@@ -89,7 +89,7 @@ double manufactured_error(TetRemedy remedy, Index cubes) {
     const bool on_face = x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9;
     return std::array<bool, 3>{on_face, on_face, on_face};
   };
-  const StaticAnswer answer = solve_statics(discretization, held, [&](const Vec3& x) { return problem.force(x); });
+  const HeldDisplacements answer = solve_statics(discretization, held, [&](const Vec3& x) { return problem.force(x); });
   double square = 0;
   for (std::size_t i = 0; i < discretization.nodes.size(); ++i)
     square += (answer.displacements[i] - problem.displacement(discretization.nodes[i])).squaredNorm();

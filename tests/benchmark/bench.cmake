@@ -18,7 +18,6 @@ target_link_libraries(bench_parts PUBLIC bar_problem rivals softreel_core fmt::f
                       PRIVATE softreel_tool softreel_warnings)
 target_include_directories(bench_parts PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(bench_parts PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-softreel_precompile(bench_parts REUSE_FROM softreel_core)
 softreel_compile_in_groups(bench_parts 5)
 
 add_executable(softreel_bench bench_main.cpp)

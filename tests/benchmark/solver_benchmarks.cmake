@@ -1,7 +1,7 @@
 # Benchmarks of the linear solver; included by tests/benchmark/CMakeLists.txt.
 set(here "${CMAKE_CURRENT_LIST_DIR}")
 add_library(bar_problem STATIC "${here}/bar_problem.cpp")
-target_link_libraries(bar_problem PUBLIC test_support PRIVATE softreel_warnings)
+target_link_libraries(bar_problem PUBLIC test_support fmt::fmt PRIVATE softreel_warnings)
 target_include_directories(bar_problem PUBLIC "${PROJECT_SOURCE_DIR}")
 
 # Other people's solvers, for solver_rivals and softreel_bench; their libraries are linked to nothing else. Those that

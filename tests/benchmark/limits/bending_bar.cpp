@@ -16,7 +16,7 @@ Vec3 weight(const Vec3&) {
   return {0, -kBarDensity * 9.81, 0};
 }
 
-double mean_sag(const std::vector<Vec3>& nodes, const StaticAnswer& answer, const std::vector<Vec3>& corners) {
+double mean_sag(const std::vector<Vec3>& nodes, const HeldDisplacements& answer, const std::vector<Vec3>& corners) {
   double sum = 0;
   for (const Vec3& corner : corners)
     for (std::size_t i = 0; i < nodes.size(); ++i)

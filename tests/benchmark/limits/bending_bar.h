@@ -10,7 +10,7 @@ inline constexpr double kBarModulus = 1e7, kBarDensity = 1000;
 
 struct BarAnswer {
   double tip = 0;  ///< mean sag of the four corners of the free end, m
-  StaticAnswer statics;
+  HeldDisplacements statics;
 };
 
 /// BCC tetrahedra, `across` cubes across. Clamped are the nodes at x = 0, so that all meshes have the same problem.

@@ -54,10 +54,10 @@ class StaticSystem {
       for (const bool is_held : held(node)) numbers_.push_back(is_held ? -1 : unknowns_++);
   }
 
-  StaticAnswer solve(const BodyForce& force) const {
+  HeldDisplacements solve(const BodyForce& force) const {
     const Eigen::SparseMatrix<double> K = stiffness();
     const Eigen::VectorXd load = find_load(force);
-    StaticAnswer answer{{}, unknowns_, K.nonZeros(), 0};
+    HeldDisplacements answer{{}, unknowns_, K.nonZeros(), 0};
     Eigen::VectorXd u;
     answer.solve_seconds = time_factor(K, load, u);
     for (std::size_t i = 0; i < discretization_.nodes.size(); ++i) {
@@ -115,7 +115,8 @@ Lame Lame::of(double youngs_modulus, double poisson_ratio) {
           youngs_modulus / (2 * (1 + poisson_ratio))};
 }
 
-StaticAnswer solve_statics(const Discretization& discretization, const HeldComponents& held, const BodyForce& force) {
+HeldDisplacements solve_statics(const Discretization& discretization, const HeldComponents& held,
+                                const BodyForce& force) {
   return StaticSystem(discretization, held).solve(force);
 }
 

@@ -46,13 +46,14 @@ using HeldComponents = std::function<std::array<bool, 3>(const Vec3& node)>;
 /// Body force, N/m^3.
 using BodyForce = std::function<Vec3(const Vec3& position)>;
 
-struct StaticAnswer {
+struct HeldDisplacements {
   std::vector<Vec3> displacements;          ///< per node, m
   std::int64_t unknowns = 0, nonzeros = 0;  ///< of the matrix without what is held, both halves
   double solve_seconds = 0;                 ///< processor time of sparse LDL^T: ordering, factorisation, solution
 };
 
 /// Throws std::runtime_error if the stiffness is not definite.
-StaticAnswer solve_statics(const Discretization& discretization, const HeldComponents& held, const BodyForce& force);
+HeldDisplacements solve_statics(const Discretization& discretization, const HeldComponents& held,
+                                const BodyForce& force);
 
 }  // namespace softreel::bench
