@@ -1,4 +1,5 @@
 // The tables of the picture: camera, environment, ground, render, output.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -22,7 +23,9 @@ void note_environment_origin(const Place&, const TomlValue& value, Shot& shot) {
   shot.environment_origin = image != nullptr ? image->origin : value.origin;
 }
 
-/// Pixels of crop and overscan.
+constexpr int kMaxSide = 32768;
+
+/// Pixels of the picture, of crop and overscan.
 void check_render(const Place& place, const TomlValue& value, RenderSettings& render) {
   const auto fail = [&](const char* name, const std::string& reason, const char* accepted, const char* next) {
     const FieldText text{"", "", "", "", accepted, "", false, false};
@@ -31,6 +34,13 @@ void check_render(const Place& place, const TomlValue& value, RenderSettings& re
                       next);
   };
   RenderParams& params = render.params;
+  const double width = std::round(render.scale * render.width), height = std::round(render.scale * render.height);
+  if (std::min(width, height) < 1 || std::max(width, height) > kMaxSide)
+    fail("scale", fmt::format("the picture would have {} x {} pixels", width, height),
+         fmt::format("what gives 1 to {} pixels a side", kMaxSide).c_str(),
+         "Scale it less, or change render.width and render.height.");
+  params.width = static_cast<int>(width);
+  params.height = static_cast<int>(height);
   if (params.min_samples % 8 != 0)
     fail("min_samples", "samples are judged in batches of 8", "a multiple of 8, at least 16", "Round it up.");
   if (render.curve.opening + render.curve.closing > 1)
@@ -170,11 +180,10 @@ const Table<RenderSettings>& render_table() {
     using R = RenderSettings;
     Table<R> t;
     t.sentence = "How the picture is computed.";
-    t.add(
-         "width", [](auto& r) -> auto& { return r.params.width; }, whole<int>(1, 32768), "pixels", "Of the picture.")
-        .add(
-            "height", [](auto& r) -> auto& { return r.params.height; }, whole<int>(1, 32768), "pixels",
-            "Of the picture.")
+    t.add("width", &R::width, whole<int>(1, kMaxSide), "pixels", "Of the picture.")
+        .add("height", &R::height, whole<int>(1, kMaxSide), "pixels", "Of the picture.")
+        .add("scale", &R::scale, number(kPositive), "",
+             "Of both: 0.5 makes the same picture with half the width and height.")
         .add(
             "samples", [](auto& r) -> auto& { return r.params.samples; }, whole<int>(1, 1 << 20), "paths a pixel",
             "Four times as many halve the noise and take four times as long. With noise or time_limit: the most.")

@@ -236,7 +236,9 @@ struct HeatSettings {
 };
 
 struct RenderSettings {
-  RenderParams params;
+  int width = 960, height = 540;  ///< pixels
+  double scale = 1;               ///< of the picture over width and height
+  RenderParams params;            ///< its width and height: those of the picture that is made
   HeatSettings heat;
   double shutter = 0;            ///< share of a frame that the shutter is open, ending at the frame; 0: no motion blur
   int blur_segments = 2;         ///< straight pieces of each point's path while the shutter is open

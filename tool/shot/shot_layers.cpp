@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <limits>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/base/error.h"
 #include "tool/shot/codecs.h"
@@ -115,6 +115,22 @@ TomlValue load_quality(const std::string& name) {
   return load_file(quality_file(name), nullptr, chain);
 }
 
+/// A quality changes the shot's bodies and adds none: one more would be a body of which next to nothing is said.
+void check_bodies(const TomlValue& quality, const TomlValue& document) {
+  const TomlValue* changed = quality.find("body");
+  if (changed == nullptr || changed->table() == nullptr) return;
+  std::vector<std::string> names;
+  if (const TomlValue* bodies = document.find("body"); bodies != nullptr && bodies->table() != nullptr)
+    for (const TomlEntry& body : *bodies->table()) names.push_back(body.key);
+  for (const TomlEntry& entry : *changed->table())
+    if (std::find(names.begin(), names.end(), entry.key) == names.end())
+      throw input_error(
+          fmt::format("{}: body.{} is wrong because the shot that this quality is for has no such body.\n"
+                      "  Accepted: {}. Correct the name, or take the table out.",
+                      to_string(entry.value.origin), entry.key,
+                      names.empty() ? "no body's table" : fmt::format("{}", fmt::join(names, ", "))));
+}
+
 }  // namespace
 
 void merge_layer(TomlValue& base, TomlValue over, Writing tables, const std::string& pattern) {
@@ -144,7 +160,11 @@ TomlValue load_layers(const std::string& path, const std::vector<Override>& over
   PresetChain chain;
   TomlValue document = load_file(path, use ? &*use : nullptr, chain);
   for (const Override& one : overrides)
-    if (one.path == kQuality) merge_layer(document, load_quality(one.value), Writing::OfLower);
+    if (one.path == kQuality) {
+      TomlValue quality = load_quality(one.value);
+      check_bodies(quality, document);
+      merge_layer(document, std::move(quality), Writing::OfLower);
+    }
   for (const Override& one : overrides)
     if (one.path != "use" && one.path != kQuality) apply_override(document, one);
   return document;

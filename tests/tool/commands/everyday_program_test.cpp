@@ -36,11 +36,11 @@ TEST(Explain, SaysWhatAQualityChanges) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out)["values"][0]["value"].get<std::string>();
   };
-  EXPECT_EQ(value("render.width", "--quality draft"), "480");
-  EXPECT_EQ(value("render.width", "--quality final"), "1920");
-  EXPECT_EQ(value("render.width", "--set render.width=5 --quality final"), "5");
-  EXPECT_EQ(value("render.width", "--quality " SOFTREEL_SOURCE_DIR "/presets/quality/final.toml"), "1920");
-  const Outcome said = run("softreel explain render.width --quality draft --shot " + shot);
+  EXPECT_EQ(value("render.scale", "--quality draft"), "0.5");
+  EXPECT_EQ(value("render.samples", "--quality final"), "256");
+  EXPECT_EQ(value("render.samples", "--set render.samples=5 --quality final"), "5");
+  EXPECT_EQ(value("render.samples", "--quality " SOFTREEL_SOURCE_DIR "/presets/quality/final.toml"), "256");
+  const Outcome said = run("softreel explain render.scale --quality draft --shot " + shot);
   EXPECT_NE(said.out.find("quality/draft.toml:3:9, --quality)"), std::string::npos) << said.out;
   const Outcome unknown = run("softreel render " + shot + " --quality darft");
   EXPECT_EQ(unknown.status, 2);

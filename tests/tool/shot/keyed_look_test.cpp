@@ -137,6 +137,17 @@ TEST_F(KeyedLook, CropAndOverscanBecomePixels) {
   EXPECT_EQ(window("crop = [0.25, 0.1, 0.5, 1]\n"), (PixelWindow{50, 10, 100, 100}));
   EXPECT_EQ(window("overscan = 0.05\n"), (PixelWindow{-10, -5, 210, 105}));
   EXPECT_EQ(window("overscan = 0.05\ncrop = [0, 0, 0.5, 0.5]\n"), (PixelWindow{-10, -5, 110, 55}));
+  EXPECT_EQ(window("scale = 2\ncrop = [0.25, 0.1, 0.5, 1]\n"), (PixelWindow{100, 20, 200, 200}));
+}
+
+TEST_F(KeyedLook, ScaleKeepsTheAspectOfThePicture) {
+  const Shot shot = load(shot_text("[render]\nwidth = 200\nheight = 101\nscale = 0.5\n"));
+  EXPECT_EQ(shot.render.params.width, 100);
+  EXPECT_EQ(shot.render.params.height, 51) << "rounded";
+  const RenderParams again = load(to_toml(shot)).render.params;
+  EXPECT_EQ(again.width, 100) << "not scaled twice";
+  EXPECT_EQ(again.height, 51);
+  EXPECT_EQ(load(shot_text("")).render.params.width, RenderSettings{}.width) << "without a table of the picture";
 }
 
 TEST_F(KeyedLook, SaysWhatIsWrong) {
@@ -149,6 +160,7 @@ TEST_F(KeyedLook, SaysWhatIsWrong) {
       {"[render]\nmin_samples = 20\n", {"render.min_samples", "multiple of 8"}},
       {"[render]\nshutter_opening = 0.6\nshutter_closing = 0.6\n", {"render.shutter_closing", "at most 1"}},
       {"[render]\ncrop = [0.5, 0, 0.2, 1]\n", {"render.crop", "no pixel"}},
+      {"[render]\nwidth = 20000\nscale = 2\n", {"render.scale = 2", "40000 x 1080 pixels", "1 to 32768"}},
       {"[material.n]\nroughness = [{frame=1,value=2}]\n", {"roughness", "0 to 1"}},
       {"[material.n]\nemission = [{frame=1,value=[1e39,0,0]}]\n", {"emission", "out of range"}},
   };

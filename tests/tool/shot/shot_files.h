@@ -340,6 +340,7 @@ shadow_catcher = true
 [render]
 width = 640
 height = 360
+scale = 1.5
 samples = 64
 noise = 0.01
 min_samples = 32

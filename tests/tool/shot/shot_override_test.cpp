@@ -84,6 +84,10 @@ TEST_F(SetOverrides, LieAboveTheQualityAndThatAboveTheShot) {
   EXPECT_NE(said.find("draft, final, preview, or the path of a file"), std::string::npos) << said;
   write("wrong.toml", "[render]\nwidht = 3\n");
   EXPECT_NE(message(text, {"quality=wrong.toml"}).find("wrong.toml:2:"), std::string::npos);
+  write("other.toml", "[render]\nwidth = 1\n[body.b]\nedge = 0.5\n");
+  const std::string other = message(text, {"quality=other.toml"});
+  EXPECT_NE(other.find("other.toml:3:1: body.b"), std::string::npos) << other;
+  EXPECT_NE(other.find("Accepted: a."), std::string::npos) << other;
   const std::string bodiless = message("[render]\nwidth = 3\n", {"quality=draft"});
   EXPECT_TRUE(bodiless.starts_with("s.toml:")) << "where the body is to be added: " << bodiless;
 }

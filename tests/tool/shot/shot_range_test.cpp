@@ -87,6 +87,7 @@ TEST_F(ShotRanges, EndWhereTheReferenceSays) {
       {"ground.specular", share, no_share},
       {"render.width", {"1", "32768"}, {"0", "32769"}},
       {"render.height", {"1", "32768"}, {"0", "32769"}},
+      {"render.scale", {"0.001", "34"}, {"0", "1e-4", "35", "1e30"}},  // of 960 x 540
       {"render.samples", {"1", "1048576"}, {"0", "1048577"}},
       {"render.max_bounces", {"0", "1024"}, {"-1", "1025"}},
       {"render.clamp", not_negative, negative},
