@@ -26,6 +26,11 @@ class LobeChoice {
   Vec2f u_;
 };
 
+/// Glass as dense as the air bends no light, however rough it is: less than a thousandth of the slope of a facet.
+bool bends_light(float ior) {
+  return std::abs(ior - 1) >= 1e-3f;
+}
+
 }  // namespace
 
 AlbedoTables AlbedoTables::of(const Appearance& appearance) {
@@ -33,13 +38,14 @@ AlbedoTables AlbedoTables::of(const Appearance& appearance) {
   tables.top = TopLayers::make(appearance);
   const float alpha = appearance.roughness * appearance.roughness;
   const bool glass = (1 - appearance.metallic) * appearance.transmission > 0;
+  const float glass_alpha = bends_light(appearance.ior) ? alpha : 0;
   if (tables.top)
     tables.reflection = AlbedoTable::of_reflection(alpha, [&](float mu) { return tables.top->passed(mu); });
   else if (glass || appearance.specular > 0 || appearance.metallic > 0 || appearance.subsurface > 0)
     tables.reflection = AlbedoTable::of_reflection(alpha);
   if (glass) {
-    tables.glass_outside = AlbedoTable::of_glass(alpha, appearance.ior);
-    tables.glass_inside = AlbedoTable::of_glass(alpha, 1 / appearance.ior);
+    tables.glass_outside = AlbedoTable::of_glass(glass_alpha, appearance.ior);
+    tables.glass_inside = AlbedoTable::of_glass(glass_alpha, 1 / appearance.ior);
   }
   return tables;
 }
@@ -53,6 +59,7 @@ AlbedoTables AlbedoTables::between(const AlbedoTables& a, const AlbedoTables& b,
 Bsdf::Bsdf(const Appearance& appearance, const AlbedoTables& tables)
     : alpha_(appearance.roughness * appearance.roughness),
       mirror_(alpha_ < kSmoothAlpha),
+      smooth_glass_(mirror_ || !bends_light(appearance.ior)),
       glass_((1 - appearance.metallic) * appearance.transmission),
       ior_(appearance.ior),
       dielectric_f0_(0.08f * appearance.specular),
@@ -190,7 +197,7 @@ void Bsdf::add_base(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const 
     }
     if (!mirror_ && view.shares.reflection > 0) add_reflection(view, i, sum);
   }
-  if (glass_ > 0 && !mirror_ && i.z() != 0) add_glass(view, i, sum);
+  if (glass_ > 0 && !smooth_glass_ && i.z() != 0) add_glass(view, i, sum);
 }
 
 BsdfValue Bsdf::evaluate_lobes(const BsdfView& view, const Vec3f& i) const {
@@ -282,7 +289,7 @@ Bsdf::Drawn Bsdf::draw(const BsdfView& view, float side, const Vec2f& u, BsdfSam
   if (choice.falls_into(p.reflection)) return draw_reflection(view, choice.point(), sample);
   if (!choice.falls_into(p.glass)) return Drawn::Nothing;  // all shares together are 1 up to rounding
   const float eta = view.inside ? 1 / ior_ : ior_;
-  if (mirror_) return draw_mirror_glass(view.o, side, eta, p.glass, sample);
+  if (smooth_glass_) return draw_mirror_glass(view.o, side, eta, p.glass, sample);
   sample.direction = sample_rough_glass(view.o, side, choice.point(), eta);
   return sample.direction.z() != 0 ? Drawn::Direction : Drawn::Nothing;
 }

@@ -130,8 +130,9 @@ class Bsdf {
   Vec3f sample_rough_glass(const Vec3f& o, float u_side, const Vec2f& u, float eta) const;
 
   float alpha_;
-  bool mirror_;      ///< GGX and glass are perfectly smooth
-  bool lambertian_;  ///< only the diffuse lobe, nothing over it
+  bool mirror_;        ///< GGX is perfectly smooth
+  bool smooth_glass_;  ///< and the glass, or it bends no light
+  bool lambertian_;    ///< only the diffuse lobe, nothing over it
   bool has_highlight_;
   bool has_cosine_lobe_;  ///< from one side at least
   float glass_;           ///< weight of the glass lobe

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "render/pathtrace/scattering.h"
 
 namespace softreel {
 
@@ -209,7 +210,7 @@ Vec3f LightSet::area_lights_along(const Vec3f& position, const Vec3f& direction,
       const float pdf = lamp_probability(k, origin.receiver) * light.pdf(position, direction, at);
       weight = power_heuristic(origin.pdf, pdf);
     }
-    sum += weight * light.radiance();
+    sum += weight * light.radiance().cwiseProduct(transmittance(origin.absorption, at));
   };
   for (std::size_t k = 0; k < lamps_.size(); ++k) std::visit([&](const auto& light) { add(k, light); }, lamps_[k]);
   return sum;

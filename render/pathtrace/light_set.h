@@ -29,6 +29,7 @@ struct RayOrigin {
   float pdf = 0;         ///< of the direction, by solid angle
   bool only_way = true;  ///< the camera or a mirror: no light sampling could have found the direction
   bool from_camera = true;
+  Vec3f absorption = Vec3f::Zero();  ///< 1/m, of what the ray goes through
 };
 
 class LightSet {

@@ -148,7 +148,8 @@ void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, cons
   shadow.direction = light.direction;
   shadow.max_distance = light.distance;
   shadow.time = ray_.time;
-  light_rays.push_back({shadow, part_of(value.value.cwiseProduct(light.radiance) * (weight / light.pdf)), number_});
+  const Vec3f arriving = light.radiance.cwiseProduct(transmittance(through ? behind_ : before_, light.distance));
+  light_rays.push_back({shadow, part_of(value.value.cwiseProduct(arriving) * (weight / light.pdf)), number_});
 }
 
 bool PathIntegrator::scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
@@ -158,7 +159,7 @@ bool PathIntegrator::scatter(const Bsdf& bsdf, const SurfacePoint& point, const 
   throughput_ = throughput_.cwiseProduct(next.weight);
   if (!(throughput_.maxCoeff() > 0)) return false;
   follow(next, point, frame);
-  if (next.subsurface && !scatter_inside(bsdf, point, numbers, scratch)) return false;
+  if (next.subsurface && !scatter_inside(bsdf, point, next.direction, scratch)) return false;
   return bounces_ < kRouletteStart || survives_roulette(numbers[kRoulette]);
 }
 
@@ -171,12 +172,12 @@ void PathIntegrator::follow(const BsdfSample& next, const SurfacePoint& point, c
   origin_.only_way = next.mirror || picture_.direct_light == DirectLight::Scattering;
   scattered_wide_ = scattered_wide_ || next.wide;
   origin_.from_camera = false;
+  origin_.absorption = next.direction.z() < 0 ? behind_ : before_;
 }
 
-bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const SampleBlock& numbers,
+bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const Vec3f& inward,
                                     PathScratch& scratch) {
   // About the triangle's own normal: the interpolated one could lead out again.
-  const Vec3f inward = -cosine_hemisphere(Vec2f(numbers[kBsdfU], numbers[kBsdfV]));
   ray_.direction = ShadingFrame(point.geometric_normal).to_world(inward);
   const SampleBlock leaving_numbers = sampler_.numbers(sample_, kLeavingBlocks + static_cast<std::uint32_t>(bounces_));
   RandomStream stream(std::uint64_t{std::bit_cast<std::uint32_t>(leaving_numbers[kRoulette])} << 32 |
@@ -213,6 +214,13 @@ bool PathIntegrator::survives_roulette(float u) {
   return true;
 }
 
+/// Bodies of dyed glass may hold others, or stand in the ground. Behind the back of a body lies air, also where that
+/// body is inside another: what it meets next there is the other's back, which tells.
+void PathIntegrator::find_media(const Bsdf& bsdf, const SurfacePoint& point) {
+  before_ = point.inside && bsdf.transmits() ? bsdf.absorption() : origin_.absorption;
+  behind_ = !point.inside && bsdf.transmits() ? bsdf.absorption() : Vec3f(Vec3f::Zero());
+}
+
 void PathIntegrator::arrive(const RayHit& hit, PathScratch& scratch) {
   mesh_ = hit.mesh;
   const MotionMesh& mesh = *picture_.meshes[static_cast<std::size_t>(hit.mesh)];
@@ -226,14 +234,15 @@ void PathIntegrator::arrive(const RayHit& hit, PathScratch& scratch) {
   SurfacePoint point = surface_point(mesh, hit, ray_);
   const Bsdf& bsdf = bsdf_at(hit, point, scratch.colored);
   if (bounces_ == 0) record_first_hit(hit, point, bsdf);
-  if (point.inside && bsdf.transmits())
-    throughput_ = throughput_.cwiseProduct((-hit.distance * bsdf.absorption()).array().exp().matrix());
+  find_media(bsdf, point);
+  throughput_ = throughput_.cwiseProduct(transmittance(before_, hit.distance));
   if (!point.inside && bsdf.emission().maxCoeff() > 0)
     radiance_ += part_of(picture_.lights->emission_weight(ray_, hit, origin_) * bsdf.emission());
   if (bounces_ == picture_.max_bounces) return;
   ++bounces_;
   const ShadingFrame frame(point.shading_normal);
   const BsdfView view = bsdf.seen_from(frame.to_local(-ray_.direction), point.inside);
+  if (!(view.o.z() > 0)) return;  // a triangle without area has no normal
   const bool every_light = bounces_ == 1 && picture_.lights->count() <= kFewLights;
   origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, ray_.time};
   if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, view, numbers, scratch);

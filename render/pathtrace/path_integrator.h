@@ -122,9 +122,12 @@ class PathIntegrator {
                const SampleBlock& numbers, PathScratch& scratch);
   /// Takes a sampled direction.
   void follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame);
-  /// From a subsurface sample at `point` through the body to where it leaves, lights sampled there; counts as one
-  /// scattering with the one that entered. False where the path ends.
-  bool scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const SampleBlock& numbers, PathScratch& scratch);
+  /// From a subsurface sample at `point`, which led `inward` (local to the triangle's own normal), through the body to
+  /// where it leaves, lights sampled there; counts as one scattering with the one that entered. False where the path
+  /// ends.
+  bool scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const Vec3f& inward, PathScratch& scratch);
+  /// What the ray that arrives at `point` came through, and what is behind it.
+  void find_media(const Bsdf& bsdf, const SurfacePoint& point);
   bool survives_roulette(float u);
 
   const Picture& picture_;
@@ -140,6 +143,7 @@ class PathIntegrator {
   bool leaving_ = false;  ///< lights are sampled for light that leaves a body
   bool scattered_wide_ = false;
   RayOrigin origin_;
+  Vec3f before_ = Vec3f::Zero(), behind_ = Vec3f::Zero();  ///< 1/m, absorption on both sides of the last surface
   FirstHit first_hit_;
   RayCone cone_;
 };

@@ -199,11 +199,10 @@ class Passes {
   std::vector<std::uint8_t> wanted_;
 };
 
-/// Least number where pixels differ in it.
+/// Of the whole picture, so that a part of it meets the same trees; the least number where pixels differ in it.
 double expected_paths(const RenderParams& params) {
-  const PixelWindow window = window_of(params);
   const int samples = params.time_limit > 0 ? 1 : params.noise > 0 ? params.min_samples : params.samples;
-  return static_cast<double>(window.width()) * window.height() * std::min(samples, params.samples);
+  return static_cast<double>(params.width) * params.height * std::min(samples, params.samples);
 }
 
 /// The material twice: as it is, and as it is seen by way of a wide scattering.

@@ -1,5 +1,7 @@
-/// What a scattering function answers: values with densities, and samples.
+/// What a scattering function answers: values with densities, and samples; what is between two of them.
 #pragma once
+
+#include <cmath>
 
 #include "core/base/types.h"
 
@@ -19,5 +21,12 @@ struct BsdfSample {
   bool mirror = false;      ///< one of finitely many directions: no light sampling can find it
   bool subsurface = false;  ///< enters the body there, to be scattered inside (Bsdf::subsurface)
 };
+
+/// What is left of light after `distance` m, by Beer's law; all of it where it comes from beyond everything, as nobody
+/// is inside a body there. absorption: 1/m.
+inline Vec3f transmittance(const Vec3f& absorption, float distance) {
+  if (absorption.isZero(0) || !std::isfinite(distance)) return Vec3f::Ones();
+  return (-distance * absorption).array().exp().matrix();
+}
 
 }  // namespace softreel

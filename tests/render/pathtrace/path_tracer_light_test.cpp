@@ -46,23 +46,78 @@ TEST(PathTracer, ClearGlassInAUniformSkyIsInvisible) {
   for (const float value : image.channels[0].pixels) EXPECT_NEAR(value, 0.5f, 1e-4f);
 }
 
-TEST(PathTracer, AbsorptionFollowsBeersLaw) {
-  // Straight through a slab of index 1: exp(-absorption * thickness).
-  Scene scene = scene_in_sky(1);
+/// Between y = -0.5 and 0.5, of index 1 and absorption 0.5, 1 and 2 / m: its top and its bottom.
+std::vector<MotionMesh> dyed_slab(float roughness) {
   Appearance dye;
   dye.transmission = 1;
-  dye.roughness = 0;
+  dye.roughness = roughness;
   dye.ior = 1;
   dye.absorption = Vec3f(0.5f, 1, 2);
   MotionMesh top = square(5, 0.5f, dye), bottom = square(5, -0.5f, dye);
   for (Triangle& t : bottom.triangles) std::swap(t[0], t[1]);
   for (Vec3f& n : bottom.times[0].normals) n = -n;
-  scene.meshes = {top, bottom};
+  return {top, bottom};
+}
+
+/// exp(-absorption * metres) of that in each channel.
+void expect_absorbed(const Image& image, double metres) {
+  for (const auto& [channel, absorption] : {std::pair{0, 0.5}, {1, 1.0}, {2, 2.0}})
+    EXPECT_NEAR(mean_of(image.channels[static_cast<std::size_t>(channel)]), std::exp(-absorption * metres), 1e-4);
+}
+
+TEST(PathTracer, AbsorptionFollowsBeersLaw) {
+  // Straight through, also where the surface is rough: what bends no light blurs none.
+  for (const float roughness : {0.0f, 0.6f}) {
+    Scene scene = scene_in_sky(1);
+    scene.meshes = dyed_slab(roughness);
+    scene.camera = camera_above(100, 0.1f);
+    expect_absorbed(rendered(scene, small_params(4, 4)), 1);
+  }
+}
+
+TEST(PathTracer, DyedGlassTintsWhatItHolds) {
+  Scene scene = scene_in_sky(0);
   scene.camera = camera_above(100, 0.1f);
-  const Image image = rendered(scene, small_params(4, 4));
-  EXPECT_NEAR(mean_of(image.channels[0]), std::exp(-0.5), 1e-4);
-  EXPECT_NEAR(mean_of(image.channels[1]), std::exp(-1.0), 1e-4);
-  EXPECT_NEAR(mean_of(image.channels[2]), std::exp(-2.0), 1e-4);
+  scene.meshes = dyed_slab(0);
+  AreaLight lamp;  // in the middle, shining up
+  lamp.center = Vec3f::Zero();
+  lamp.u = Vec3f(1, 0, 0);
+  lamp.v = Vec3f(0, 0, -1);
+  ASSERT_GT(lamp.u.cross(lamp.v).y(), 0);
+  lamp.radiance = Vec3f::Ones();
+  scene.area_lights = {lamp};
+  expect_absorbed(rendered(scene, small_params(4, 4)), 0.5);
+
+  scene.area_lights.clear();
+  Appearance glowing = matte(0);
+  glowing.emission = Vec3f::Ones();
+  scene.meshes.push_back(square(1, -0.25f, glowing));
+  expect_absorbed(rendered(scene, small_params(4, 4)), 0.75);
+}
+
+TEST(PathTracer, LightInsideDyedGlassIsFoundAlikeByLampsAndByScattering) {
+  Scene scene = scene_in_sky(0);
+  scene.meshes = dyed_slab(0);
+  scene.meshes.push_back(square(1, -0.4f, matte(0.8f)));
+  Appearance glowing = matte(0);
+  glowing.emission = Vec3f::Constant(3);
+  scene.meshes.push_back(sphere(Vec3f(0.5f, 0, 0), 0.25f, glowing));
+  scene.camera = camera_above(10, 0.1f);
+  AreaLight lamp;  // beside it, shining down
+  lamp.center = Vec3f(-0.5f, 0.2f, 0);
+  lamp.u = Vec3f(0, 0, 0.2f);
+  lamp.v = Vec3f(-0.2f, 0, 0);
+  lamp.radiance = Vec3f::Constant(3);
+  scene.area_lights = {lamp};
+  const auto found = [&](DirectLight by) {
+    RenderParams params = small_params(8, 1024);
+    params.direct_light = by;
+    return mean_of(rendered(scene, params).channels[2]);
+  };
+  const double weighed = found(DirectLight::Weighed);
+  EXPECT_GT(weighed, 0.01);
+  EXPECT_NEAR(found(DirectLight::Lights), weighed, 0.02 * weighed);
+  EXPECT_NEAR(found(DirectLight::Scattering), weighed, 0.03 * weighed);
 }
 
 TEST(PathTracer, RectangleOverAFloorMatchesItsFormFactor) {

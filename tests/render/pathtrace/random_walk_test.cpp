@@ -185,6 +185,38 @@ TEST(SubsurfacePicture, LampsAndSkyAgreeWithTheDiffuseLobe) {
   EXPECT_NEAR(scattered, diffuse, 0.03 * diffuse);
 }
 
+TEST(SubsurfacePicture, LightEntersEvenlyToAllSides) {
+  // At the edge of the light of a lamp that lies on the body it is as bright from whichever side that comes, also where
+  // the walk shares its numbers with another lobe.
+  Scene scene = scene_in_sky(0);
+  Appearance skin = waxy(Vec3f::Constant(0.8f), 0.05f);
+  skin.specular = 0;
+  skin.subsurface = 0.3f;
+  skin.subsurface_anisotropy = 0.9f;
+  MotionMesh top = square(5, 0, skin);
+  const MotionMesh bottom = square(5, -2, skin);
+  for (const Triangle& t : bottom.triangles) top.triangles.push_back({t[0] + 4, t[2] + 4, t[1] + 4});
+  for (const Vec3f& p : bottom.times[0].positions) top.times[0].positions.push_back(p);
+  top.times[0].normals.insert(top.times[0].normals.end(), 4, Vec3f(0, -1, 0));
+  scene.meshes = {top};
+  scene.camera = camera_above(10, 0.002f);
+  const auto brightness = [&](const Vec3f& side) {
+    AreaLight lamp;
+    lamp.center = side + Vec3f(0, 1e-3f, 0);
+    lamp.u = side;
+    lamp.v = Vec3f(0, 1, 0).cross(side);
+    if (lamp.u.cross(lamp.v).y() > 0) lamp.v = -lamp.v;
+    lamp.radiance = Vec3f::Ones();
+    lamp.visible = false;
+    scene.area_lights = {lamp};
+    return mean_of(rendered(scene, deep_params(8, 1024)).channels[0]);
+  };
+  for (const Vec3f& side : {Vec3f(1, 0, 0), Vec3f(0, 0, 1)}) {
+    const double here = brightness(side), there = brightness(-side);
+    EXPECT_NEAR(here, there, 0.01 * there) << side.transpose();
+  }
+}
+
 TEST(SubsurfacePicture, BodyThatOverlapsItselfIsOneBody) {
   Scene scene = scene_in_sky(0.5f);
   MotionMesh two = sphere(Vec3f(-0.3f, 0, 0), 0.7f, waxy(Vec3f::Ones(), 0.1f));
