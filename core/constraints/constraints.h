@@ -20,7 +20,8 @@ struct Pin {
   const FollowedMotion* follow = nullptr;  ///< instead of the track; kept by reference
   std::vector<FollowTie> ties = {};        ///< per point, by follow; empty where all space moves as one
   /// Takes the points where they are when it starts, and moves them on from there as the track (or follow) moves from
-  /// then. It starts at the first frame that a step ends at in an active range: the next step is held.
+  /// then. It starts at the first frame that a step ends at in an active range: the next step is held. Where the next
+  /// range begins before a step has ended between them, it is held on into that, and taken anew there.
   bool grab = false;
 };
 

@@ -85,7 +85,7 @@ PinnedNodes NodePins::at(double frame, std::span<const Grab> grabs) const {
     const Held& its = held_[p];
     const Index range = active_range(pin.active, frame);
     const Grab& grab = pin.grab && p < grabs.size() ? grabs[p] : nothing;
-    if (range < 0 || (pin.grab && grab.range != range)) continue;
+    if (range < 0 || (pin.grab && !grab.holds())) continue;
     const std::vector<Vec3> targets = guided_points({pin.track, pin.follow, its.ties}, its.rest, frame, grab);
     for (std::size_t n = 0; n < targets.size(); ++n) {
       const auto i = static_cast<std::size_t>(its.nodes[n]);

@@ -51,7 +51,7 @@ std::vector<ActivePull> active_pulls(const std::vector<Pull>& pulls, const std::
     const Pull& pull = pulls[p];
     const Index range = pulling_range(pull, frame);
     const Grab& grab = pull.grab && p < grabs.size() ? grabs[p] : nothing;
-    if (range < 0 || (pull.grab && grab.range != range)) continue;
+    if (range < 0 || (pull.grab && !grab.holds())) continue;
     const double stiffness = pull.stiffness.at(frame);
     const std::vector<Vec3> targets = pull_targets(pull, surface_points, frame, grab);
     ActivePull result{{}, 0, pull.max_force};
@@ -91,6 +91,13 @@ double pull_factor(const ActivePull& pull, std::span<const Vec3> positions) {
   if (pull.max_force <= 0) return 1;
   const double force = std::sqrt(2 * pull.stiffness * unlimited_energy(pull, positions));
   return force > pull.max_force ? pull.max_force / force : 1.0;
+}
+
+ActivePull softened(ActivePull pull, double factor) {
+  for (Spring& spring : pull.springs) spring.stiffness *= factor;
+  pull.stiffness *= factor;
+  pull.max_force = 0;
+  return pull;
 }
 
 double pull_energy(const ActivePull& pull, std::span<const Vec3> positions) {

@@ -3,9 +3,9 @@
 /// A limited pull (max_force) measures its pull as k d, with k its whole stiffness and d the root mean square distance
 /// of its points, weighted by their stiffness: never less than the length of the summed force, and equal to it where
 /// all points are equally far. Beyond the limit all springs soften by the same factor, max_force / (k d). So the force
-/// has an energy (k d^2 / 2, growing linearly beyond the limit), and the factor at the start of a step times the
-/// stiffness is its secant stiffness, which is never softer than the tangent: the pull stays implicit and never
-/// overshoots.
+/// has an energy (k d^2 / 2, growing linearly beyond the limit), and the factor times the stiffness is its secant
+/// stiffness: a step by one solve takes the least of the factors along its way, so that the pull stays implicit and
+/// neither overshoots nor is stronger than its limit.
 #pragma once
 
 #include <array>
@@ -58,6 +58,9 @@ void update_grabs(const std::vector<Pull>& pulls, const std::vector<Vec3>& surfa
 
 /// Factor on the stiffness that keeps to max_force, in (0, 1].
 double pull_factor(const ActivePull& pull, std::span<const Vec3> positions);
+
+/// The pull without a limit whose springs are `factor` times as stiff.
+ActivePull softened(ActivePull pull, double factor);
 
 /// Energy of the springs, J.
 double pull_energy(const ActivePull& pull, std::span<const Vec3> positions);

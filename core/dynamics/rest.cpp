@@ -34,7 +34,7 @@ bool is_at_rest(Simulator::Parts& parts, const PinnedNodes& pinned, const std::v
   StaticState now{state.positions, state.rotations, {}};
   statics.evaluate(now);
   std::vector<Mat3>().swap(parts.stresses);  // steps in float do without
-  if (!(now.residual <= parts.params.force_tolerance * now.scale)) return false;
+  if (!statics.balances(now, parts.params.force_tolerance)) return false;
   rest = {true, seconds, pinned.held, pulls};
   return true;
 }

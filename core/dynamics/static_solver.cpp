@@ -124,7 +124,7 @@ void StaticSolver::evaluate(StaticState& state) {
   state.residual = std::sqrt(dot(state.forces, state.forces));
 }
 
-void StaticSolver::measure_scales(StaticState& state) const {
+void StaticSolver::measure_scales(StaticState& state) {
   const ElasticBody& body = parts_.body;
   std::vector<double> magnitudes(state.positions.size(), 0), errors(state.positions.size(), 0);
   for (std::size_t e = 0; e < body.tets.size(); ++e) {
@@ -155,6 +155,7 @@ void StaticSolver::measure_scales(StaticState& state) const {
     }
   }
   double scale = 0, error = 0, work = 0;
+  piece_scales_.assign(static_cast<std::size_t>(parts_.pieces.count), 0);
   for (std::size_t i = 0; i < magnitudes.size(); ++i) {
     double magnitude = magnitudes[i] + parts_.masses.mass[i] * parts_.model.gravity.norm();
     if (potential_ != nullptr) {
@@ -163,11 +164,21 @@ void StaticSolver::measure_scales(StaticState& state) const {
     }
     work += magnitude * state.positions[i].norm();  // of all forces, over a move as long as the node is far
     scale += magnitude * magnitude;
+    piece_scales_[static_cast<std::size_t>(parts_.pieces.of_node[i])] += magnitude * magnitude;
     error += errors[i] * errors[i];
   }
   state.energy_noise += 4 * std::numeric_limits<double>::epsilon() * work;
   state.scale = std::sqrt(scale);
   state.round_off = std::sqrt(error);
+}
+
+bool StaticSolver::balances(const StaticState& state, double tolerance) const {
+  std::vector<double> residuals(piece_scales_.size(), 0);
+  for (std::size_t i = 0; i < state.forces.size(); ++i)
+    residuals[static_cast<std::size_t>(parts_.pieces.of_node[i])] += state.forces[i].squaredNorm();
+  for (std::size_t p = 0; p < residuals.size(); ++p)
+    if (!(std::sqrt(residuals[p]) <= std::max(tolerance * std::sqrt(piece_scales_[p]), state.round_off))) return false;
+  return state.residual <= tolerance * state.scale;
 }
 
 void StaticSolver::assemble(const StaticState& state, Curvature curvature) {

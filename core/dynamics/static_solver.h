@@ -37,6 +37,10 @@ class StaticSolver {
   /// Fills everything of a state but positions (rotations: guesses in, results out).
   void evaluate(StaticState& state);
 
+  /// Whether the forces of the state that was last evaluated balance in each piece by itself, to its own scale: the
+  /// whole weight of a light one is little beside what a heavy one carries.
+  bool balances(const StaticState& state, double tolerance) const;
+
   int iterations() const { return iterations_; }  ///< Newton iterations so far
 
  private:
@@ -58,17 +62,18 @@ class StaticSolver {
   bool move_held(StaticState& state, std::span<const Vec3> targets);
   bool improves(const StaticState& from, const StaticState& to, double step, double slope) const;
   double add_potential(StaticState& state);
-  void measure_scales(StaticState& state) const;
+  void measure_scales(StaticState& state);
 
   Simulator::Parts& parts_;
   std::span<const std::uint8_t> held_;
   std::span<const std::uint8_t> held_pieces_;
   const std::vector<ActivePull>& pulls_;
   const StepPotential* potential_;
-  std::vector<double> shares_;      ///< per element: 1 and b / r of damping
-  std::vector<double> node_terms_;  ///< inertia; in statics, what holds the rigid motions of pieces without a pin
-  std::vector<Vec3> step_forces_;   ///< of the potential at the state that was last evaluated, N
-  bool unstable_ = false;           ///< the exact tangent gave no direction of descent at the present state
+  std::vector<double> shares_;        ///< per element: 1 and b / r of damping
+  std::vector<double> node_terms_;    ///< inertia; in statics, what holds the rigid motions of pieces without a pin
+  std::vector<double> piece_scales_;  ///< squares of StaticState::scale of each piece, of the state last evaluated
+  std::vector<Vec3> step_forces_;     ///< of the potential at the state that was last evaluated, N
+  bool unstable_ = false;             ///< the exact tangent gave no direction of descent at the present state
   int iterations_ = 0;
   int ahead_pause_ = 1, next_ahead_ = 0;  ///< iterations to leave out after a failure of search_ahead; its next try
   int linear_iterations_ = 0;

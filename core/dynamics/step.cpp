@@ -9,6 +9,7 @@
 /// exact for a capped dilatation and without the cancellation of K x against f0. Beside t r K stands t r G, the
 /// stiffness that tension adds, where leaving it out could make the body flutter (core/elasticity/tension.h): it enters
 /// matrix and right side alike, so at rest nothing changes.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -27,6 +28,11 @@ bool all_finite(std::span<const Vec3> vectors) {
 }
 
 namespace {
+
+/// A limited pull may be that much stronger at the end of a step than it may be.
+constexpr double kForceExcess = 0.01;
+/// What is beyond the strength of a pull softens it by their ratio in each solve, and further in the next step.
+constexpr int kMostSolves = 8;
 
 /// Share of the tension harmless by find_tension_limits that is left out: half, as thickness is only estimated; of the
 /// ninth of it that is harmless to BDF2 from its predictor (by the roots of the stiff oscillator's recurrence, 1 / 9
@@ -188,6 +194,48 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
   return next;
 }
 
+/// Where the nodes are at the end if their velocities then are those of `work`, changed.
+std::vector<Vec3> end_positions(const StepWork& work, std::span<const Vec3> change) {
+  std::vector<Vec3> positions = work.step.base_positions;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    positions[i] += work.step.seconds.position * work.velocities[i];
+    if (!change.empty()) positions[i] += work.step.seconds.position * change[i];
+    if (work.pinned.held[i] != 0) positions[i] = work.pinned.targets[i];
+  }
+  return positions;
+}
+
+/// One solve, and another where a limited pull would be stronger than it may at the end. Its springs are softened by
+/// the least of its factors at the start, where the body is going, and at the ends found so far: what a body moves
+/// away from, and glue under a load beyond its strength, is pulled by max_force from the first step on.
+SolveReport solve_within_limits(Simulator::Parts& parts, StepWork& work, StepReport& step) {
+  const auto is_limited = [](const ActivePull& pull) { return pull.max_force > 0; };
+  if (std::none_of(work.pulls.begin(), work.pulls.end(), is_limited)) return solve_once(parts, work, step);
+  const std::vector<ActivePull> limited = work.pulls;
+  std::vector<double> factors(limited.size(), 1);
+  std::vector<Vec3> ends = end_positions(work, {});
+  for (std::size_t p = 0; p < limited.size(); ++p) factors[p] = pull_factor(limited[p], work.positions);
+  SolveReport report;
+  int iterations = 0;
+  for (int solves = 0; solves < kMostSolves; ++solves) {
+    bool too_strong = solves == 0;
+    for (std::size_t p = 0; p < limited.size(); ++p) {
+      const double factor = pull_factor(limited[p], ends);
+      if (factors[p] <= factor * (1 + kForceExcess)) continue;
+      factors[p] = factor;
+      too_strong = true;
+    }
+    if (!too_strong) break;
+    for (std::size_t p = 0; p < limited.size(); ++p) work.pulls[p] = softened(limited[p], factors[p]);
+    report = solve_once(parts, work, step);
+    iterations += report.iterations;
+    if (!report.ok()) break;
+    ends = end_positions(work, work.change);
+  }
+  report.iterations = iterations;
+  return report;
+}
+
 /// Rotations shared by recovery have no energy to iterate on: then even an iterated step is one solve.
 StepReport solve_step(Simulator::Parts& parts, double frame, StepWork& work) {
   const RecoveryReport recovery = find_step_rotations(parts, frame, work);
@@ -196,7 +244,7 @@ StepReport solve_step(Simulator::Parts& parts, double frame, StepWork& work) {
     parts.coarse_lag.usable = false;  // its tangents take the place of the float matrix
     report = iterate_step(parts, work);
   } else {
-    report.solve = solve_once(parts, work, report);
+    report.solve = solve_within_limits(parts, work, report);
   }
   report.recovery = recovery;
   return report;

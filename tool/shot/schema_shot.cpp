@@ -54,7 +54,8 @@ const Table<ShotSettings>& settings_table() {
         .add("fps", &S::fps, number({0, 100000, true}), "frames/s", "Frames a second.");
     add_frames(t);
     t.add("preroll", &S::preroll, whole<int>(0, kLastFrame), "frames",
-          "Simulated before the first frame and not shown; pins and pulls hold their first values.")
+          "Simulated before the first frame and not shown, at the frame numbers before it: keys hold their first "
+          "values there, and what is active from the first frame on is not active yet.")
         .add("start", &S::start,
              choice<StartState>({{"rest", StartState::Rest}, {"equilibrium", StartState::Equilibrium}}), "",
              "Begin undeformed, or sagged into balance under the first frame's pins and gravity.")

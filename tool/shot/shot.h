@@ -44,7 +44,7 @@ struct ShotSettings {
   std::string name;  ///< names the files of the output; default: the shot file's stem
   double fps = 24;
   int first_frame = 1, last_frame = 96;
-  int preroll = 0;  ///< frames simulated before the first, not rendered; constraints hold their first values
+  int preroll = 0;  ///< frames simulated before the first, not rendered, at the frame numbers before it
   StartState start = StartState::Rest;
   SimulationMode mode = SimulationMode::Dynamic;
   bool independent = false;  ///< statics: every frame starts from rest

@@ -244,6 +244,23 @@ TEST(Rest, IsNotTheTurnOfASwingNorABodyThatFalls) {
   EXPECT_FALSE(swinging.simulator.step(2, 1 / kFps).at_rest) << "still, but not in balance";
 }
 
+TEST(Rest, IsNotThatOfALightPieceThatFallsBesideAHeavyOne) {
+  const TetMesh statue = testing::kuhn_bar({2, 2, 2}, Vec3::Ones()),
+                leaf = testing::kuhn_bar({2, 1, 1}, Vec3::Constant(0.1));
+  TetMesh both = statue;
+  const auto shift = static_cast<Index>(statue.nodes.size());
+  for (const Vec3& node : leaf.nodes) both.nodes.push_back(node + Vec3(3, 0, 0));
+  for (const Tet& tet : leaf.tets)
+    both.tets.push_back({tet[0] + shift, tet[1] + shift, tet[2] + shift, tet[3] + shift});
+  BodyModel model = body_model(both, {1e6, 0.3, 1e4, 0, 0});
+  for (std::size_t e = statue.tets.size(); e < both.tets.size(); ++e) model.materials[e].density = 1;
+  model.pins = {testing::make_pin(testing::select_nodes(both, [](const Vec3& p) { return p.x() < 2; }))};
+  Bench bench(model);
+  EXPECT_FALSE(bench.simulator.step(1, 1 / kFps).at_rest);
+  for (std::size_t i = statue.nodes.size(); i < both.nodes.size(); ++i)
+    EXPECT_NEAR(bench.simulator.state().positions[i].y() - both.nodes[i].y(), -9.81 / (kFps * kFps), 1e-6);
+}
+
 TEST(Rest, ChangesNothingBeyondItsTolerance) {
   for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
     SolverParams stepped;

@@ -261,6 +261,22 @@ TEST(GluedBodies, AFreeBodyHangsOnTheOneThatPinsHold) {
   EXPECT_FALSE(limited.simulator.find_equilibrium(1).ok()) << "so little cannot carry it";
 }
 
+TEST(GluedBodies, GlueLetsGoAtOnceOfWhatIsTooHeavy) {
+  BodyModel model = halves(2, 2);
+  model.glues[0].max_force = 30;  // N
+  const double weight = 0.4 * 0.2 * 0.2 * 1000 * 9.81;
+  Bench bench(model);
+  const int steps = 12;
+  for (int k = 1; k <= steps; ++k) ASSERT_TRUE(bench.simulator.step(k, kStep).ok());
+  const std::vector<Vec3>& velocities = bench.simulator.state().velocities;
+  const std::size_t half = velocities.size() / 2;  // the right one, whose nodes come last
+  double speed = 0;
+  for (std::size_t i = half; i < velocities.size(); ++i) speed -= velocities[i].y() / static_cast<double>(half);
+  const double fall = 9.81 * steps * kStep;
+  EXPECT_GT(speed, (1 - 30 / weight) * fall) << "as if 30 N had held it all the time";
+  EXPECT_LT(speed, fall);
+}
+
 TEST(GluedBodies, GlueTooStiffToBeSolvedIsNamed) {
   BodyModel model = halves(8, 7);
   model.glues[0].stiffness = constant(1e15);

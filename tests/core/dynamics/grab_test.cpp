@@ -115,6 +115,50 @@ TEST(Grab, StartsWithoutAJumpEachTimeWhereAPlainPinJumps) {
   EXPECT_GT(jump[0], 0.005);
 }
 
+TEST(Grab, HoldsOnFromOneRangeIntoTheNext) {
+  BodyModel model = with_pin(true);
+  model.pins[1].track = testing::constant(Transform{});
+  model.pins[1].active = {{kGrabbed, kReleased}, {kReleased + 1, kEnd}};
+  const std::vector<Index> points = tip(model.mesh);
+  Bench bench(model);
+  bench.simulator.start_grabs(kStart);
+  for (int frame = kStart + 1; frame <= kGrabbed; ++frame) advance(bench.simulator, frame);
+  const std::vector<Vec3> taken = bench.simulator.state().positions;
+  for (int frame = kGrabbed + 1; frame <= kEnd; ++frame) {
+    advance(bench.simulator, frame);
+    EXPECT_EQ(farthest_move(bench.simulator.state().positions, taken, points), 0) << frame;
+  }
+}
+
+TEST(Grab, OfAFallingBodyPullsNoHarderThanMaxForce) {
+  BodyModel model = swinging_bar();
+  model.pins.clear();
+  Pull pull = testing::make_pull(tip(model.mesh), {}, 1e6);
+  pull.max_force = 10;  // N; the bar weighs 235 N
+  pull.grab = true;
+  pull.active = {{kGrabbed, kEnd}};
+  model.pulls = {pull};
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2}) {
+    SolverParams params = testing::exact_params();
+    params.integrator = integrator;
+    Bench bench(model, params);
+    bench.simulator.start_grabs(kStart);
+    double before = 0;
+    const double weight = 9.81 * 24;
+    for (int frame = kStart + 1; frame <= kEnd; ++frame) {
+      advance(bench.simulator, frame);
+      const double now = bench.simulator.measure().linear_momentum.y();
+      const double force = (now - before) * kFps + weight;
+      before = now;
+      // The change of BDF2's momentum in a step is a third of that of the step before, and two thirds of the forces'.
+      EXPECT_LT(force, 10 * 1.02) << frame;
+      if (frame > kGrabbed + 5) {
+        EXPECT_GT(force, 10 * 0.98) << frame;
+      }
+    }
+  }
+}
+
 /// Elastic, kinetic and gravitational energy, J.
 double energy(const Simulator& simulator) {
   const StateMeasures measures = simulator.measure();
