@@ -97,11 +97,37 @@ std::string ending(const std::string& path) {
 EnvironmentImage from_display(const DisplayImage& display) {
   EnvironmentImage image{display.width, display.height, {}};
   image.pixels.reserve(pixel_count(display.width, display.height));
-  for (std::size_t k = 0; k < display.pixels.size(); k += 3) {
-    const auto linear = [&](std::size_t c) { return srgb_decode(static_cast<float>(display.pixels[k + c]) / 255); };
+  for (std::size_t k = 0; k < pixel_count(display.width, display.height); ++k) {
+    const float seen = display.alpha.empty() ? 1.0f : static_cast<float>(display.alpha[k]) / 255;
+    const auto linear = [&](std::size_t c) {
+      return seen * srgb_decode(static_cast<float>(display.pixels[3 * k + c]) / 255);
+    };
     image.pixels.emplace_back(linear(0), linear(1), linear(2));
   }
   return image;
+}
+
+/// All of the picture, black where the file has no data; what lies beyond the picture is left out.
+Image whole_picture(Image image, const std::string& path) {
+  constexpr double kMostPixels = 1 << 28;  // a small file may claim any size
+  const double pixels = static_cast<double>(image.full_width) * image.full_height;
+  if (image.full_width < 1 || image.full_height < 1 || pixels > kMostPixels)
+    throw unreadable(path, fmt::format("its display window has {} x {} pixels", image.full_width, image.full_height),
+                     "an EXR of at most 268 million pixels");
+  if (image.left == 0 && image.top == 0 && image.width == image.full_width && image.height == image.full_height)
+    return image;
+  Image whole{image.full_width, image.full_height, {}};
+  for (const Channel& channel : image.channels) {
+    Channel& pasted = whole.channels.emplace_back(
+        Channel{channel.name, std::vector<float>(pixel_count(whole.width, whole.height), 0.0f)});
+    for (int y = std::max(0, image.top); y < std::min(whole.height, image.top + image.height); ++y)
+      for (int x = std::max(0, image.left); x < std::min(whole.width, image.left + image.width); ++x)
+        pasted
+            .pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(whole.width) + static_cast<std::size_t>(x)] =
+            channel.pixels[static_cast<std::size_t>(y - image.top) * static_cast<std::size_t>(image.width) +
+                           static_cast<std::size_t>(x - image.left)];
+  }
+  return whole;
 }
 
 EnvironmentImage from_channels(const Image& image, const std::string& path) {
@@ -207,12 +233,22 @@ DisplayImage read_png(const std::string& path) {
   header.version = PNG_IMAGE_VERSION;
   if (png_image_begin_read_from_file(&header, path.c_str()) == 0)
     throw unreadable(path, header.message, "a PNG picture");
-  header.format = PNG_FORMAT_RGB;
+  const bool has_alpha = (header.format & PNG_FORMAT_FLAG_ALPHA) != 0;
+  header.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // as those of 8 bits, where the file names no gamma
+  header.format = has_alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
   DisplayImage image{static_cast<int>(header.width), static_cast<int>(header.height), {}};
-  image.pixels.resize(3 * pixel_count(image.width, image.height));
-  const png_color black{0, 0, 0};  // behind transparent pixels
-  if (png_image_finish_read(&header, &black, image.pixels.data(), 0, nullptr) == 0)
+  const std::size_t pixels = pixel_count(image.width, image.height), values = has_alpha ? 4 : 3;
+  image.pixels.resize(values * pixels);
+  if (png_image_finish_read(&header, nullptr, image.pixels.data(), 0, nullptr) == 0)
     throw unreadable(path, header.message, "a complete PNG picture");
+  if (!has_alpha) return image;
+  image.alpha.resize(pixels);
+  for (std::size_t k = 0; k < pixels; ++k) {
+    std::copy_n(image.pixels.begin() + static_cast<std::ptrdiff_t>(4 * k), 3,
+                image.pixels.begin() + static_cast<std::ptrdiff_t>(3 * k));
+    image.alpha[k] = image.pixels[4 * k + 3];
+  }
+  image.pixels.resize(3 * pixels);
   return image;
 }
 
@@ -261,7 +297,7 @@ TexturePicture read_texture_picture(const std::string& path) {
   if (end != "exr")
     throw unreadable(path, fmt::format("'.{}' names no known format", end),
                      "files ending in .exr, .hdr, .png, .jpg, .jpeg");
-  Image image = read_exr(path);
+  Image image = whole_picture(read_exr(path), path);
   if (const Channel* grey = image.find("Y"); grey != nullptr && image.find("R") == nullptr) {
     const std::vector<float> values = grey->pixels;
     image.channels = {{"R", values}, {"G", values}, {"B", values}};
@@ -273,7 +309,7 @@ EnvironmentImage read_environment(const std::string& path) {
   const std::string end = ending(path);
   EnvironmentImage image;
   if (end == "exr")
-    image = from_channels(read_exr(path), path);
+    image = from_channels(whole_picture(read_exr(path), path), path);
   else if (end == "hdr")
     image = read_hdr(path);
   else if (end == "png")

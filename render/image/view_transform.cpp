@@ -17,7 +17,7 @@ namespace {
 /// 2024, without its lift of the darks.)
 Vec3f filmic(const Vec3f& linear) {
   constexpr float kKnee = 0.76f, kFade = 0.15f;
-  const Vec3f c = linear.cwiseMax(0.0f);
+  const Vec3f c = linear.cwiseMax(0.0f).cwiseMin(1e12f);  // white, also where the light has no number any more
   const float peak = c.maxCoeff();
   if (peak <= kKnee) return c;
   constexpr float kRoom = 1 - kKnee;

@@ -1,6 +1,7 @@
 #include "tool/export/obj_export.h"
 
 #include <iterator>
+#include <set>
 #include <string>
 
 #include <fmt/compile.h>
@@ -11,15 +12,31 @@
 namespace softreel {
 namespace {
 
+/// Names of the groups as one word each, and no two alike: blanks part names there, and # begins a comment.
+std::vector<std::string> group_words(const std::vector<VertexGroup>& groups) {
+  std::vector<std::string> words;
+  std::set<std::string> taken;
+  for (const VertexGroup& group : groups) {
+    std::string word = group.name;
+    for (char& c : word)
+      if (static_cast<unsigned char>(c) <= ' ' || c == '#' || c == '\\') c = '_';
+    const std::string plain = word;
+    for (int n = 2; !taken.insert(word).second; ++n) word = fmt::format("{}_{}", plain, n);
+    words.push_back(std::move(word));
+  }
+  return words;
+}
+
 /// A corner is VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or VERTEX/TEXTURE/NORMAL.
 void write_polygons(const SurfaceMesh& mesh, bool has_normals, fmt::memory_buffer& text) {
   const PolygonList& polygons = mesh.polygons;
   const auto out = std::back_inserter(text);
+  const std::vector<std::string> words = group_words(mesh.groups);
   Index group = -1;
   for (std::size_t p = 0; p < polygons.size(); ++p) {
     if (!polygons.polygon_groups.empty() && polygons.polygon_groups[p] != group) {
       group = polygons.polygon_groups[p];
-      fmt::format_to(out, "{}\n", group < 0 ? "g" : "g " + mesh.groups[static_cast<std::size_t>(group)].name);
+      fmt::format_to(out, "{}\n", group < 0 ? "g" : "g " + words[static_cast<std::size_t>(group)]);
     }
     text.push_back('f');
     for (Index c = polygons.offsets[p]; c < polygons.offsets[p + 1]; ++c) {
@@ -54,7 +71,7 @@ ExportFormat obj_format() {
   ExportFormat format;
   format.name = "obj";
   format.about = "Wavefront OBJ, a file a frame, with polygons, texture coordinates and groups; exact";
-  format.version = 3;
+  format.version = 4;
   format.has_normals = true;
   format.make = whole_file_writer(encode_obj);
   return format;

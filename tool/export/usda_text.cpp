@@ -58,8 +58,8 @@ std::string usda_quoted(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') quoted += '\\';
-    if (c == '\n')
-      quoted += "\\n";
+    if (c == '\n' || c == '\r')
+      quoted += c == '\n' ? "\\n" : "\\r";
     else
       quoted += c;
   }

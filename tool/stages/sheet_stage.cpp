@@ -13,7 +13,7 @@ namespace softreel {
 namespace {
 
 StageKey sheet_key(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs) {
-  KeyHasher key("sheet 2");
+  KeyHasher key("sheet 3");
   const ShotSettings& settings = shot.settings;  // of the title
   key.add(outputs.shot_name()).add(settings.fps).add(settings.first_frame).add(settings.last_frame);
   key.add(frames).add(columns);
@@ -51,7 +51,7 @@ std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int col
   std::vector<SheetPicture> pictures;
   for (const int frame : frames) {
     context.stop_if_cancelled();
-    pictures.push_back({read_png(outputs.frame_path(frame, "png")), fmt::format("frame {}", frame)});
+    pictures.push_back({over_grey(read_png(outputs.frame_path(frame, "png"))), fmt::format("frame {}", frame)});
   }
   const SheetStyle style{.columns = columns, .title = title_of(shot, pictures.front().picture)};
   const std::vector<std::uint8_t> bytes = encode_png(contact_sheet(pictures, style));

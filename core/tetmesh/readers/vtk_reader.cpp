@@ -1,4 +1,6 @@
 /// VTK's legacy format, text and binary, with cells as lists (versions up to 4.2) or with offsets (5.1).
+#include <map>
+
 #include "core/tetmesh/readers/vtk_cells.h"
 
 namespace softreel::detail {
@@ -29,8 +31,9 @@ class VtkReader {
       } else if (keyword == "CELL_TYPES") {
         types_ = values(in_.count(1), "int");
       } else if (keyword == "METADATA") {
-        in_.line();
-        while (!in_.rest().empty() && !in_.line().empty()) continue;  // an empty line ends it
+        skip_metadata();
+      } else if (keyword == "FIELD" && offsets_.empty()) {
+        skip_field();  // of the whole data set, such as its time, before its points
       } else if (keyword == "POINT_DATA" || keyword == "CELL_DATA" || keyword == "FIELD") {
         break;  // nothing that makes the mesh comes behind them
       } else {
@@ -58,6 +61,44 @@ class VtkReader {
     if (type == "vtktypeint64" || type == "long") return static_cast<double>(in_.binary<std::int64_t>(true));
     throw unread_variant(in_.source(), fmt::format("the data type '{}'", type.substr(0, 30)),
                          "float, double, int and vtktypeint64");
+  }
+
+  /// Up to the empty line that ends it.
+  void skip_metadata() {
+    in_.line();
+    while (!in_.rest().empty() && !in_.line().empty()) continue;
+  }
+
+  void skip_field() {
+    in_.word();  // its name
+    const std::size_t arrays = in_.count(1);
+    for (std::size_t a = 0; a < arrays; ++a) {
+      std::string_view name = in_.word();
+      while (name == "METADATA") {
+        skip_metadata();
+        name = in_.word();
+      }
+      const std::size_t components = in_.count(1), tuples = in_.count(1);
+      const std::string type(in_.word());
+      if (is_binary_) {
+        in_.line();
+        in_.skip(components * tuples * bytes_of(type));
+      } else {
+        for (std::size_t k = 0; k < components * tuples; ++k) in_.word();
+      }
+    }
+  }
+
+  std::size_t bytes_of(const std::string& type) const {
+    static const std::map<std::string, std::size_t> sizes{
+        {"char", 1},          {"unsigned_char", 1}, {"short", 2},        {"unsigned_short", 2},
+        {"int", 4},           {"float", 4},         {"unsigned_int", 4}, {"long", 8},
+        {"unsigned_long", 8}, {"vtktypeint64", 8},  {"double", 8},       {"vtkIdType", 4}};
+    const auto found = sizes.find(type);
+    if (found == sizes.end())
+      throw unread_variant(in_.source(), fmt::format("a field of the data type '{}'", type.substr(0, 30)),
+                           "fields of numbers");
+    return found->second;
   }
 
   void read_points(TetFileContents& contents) {

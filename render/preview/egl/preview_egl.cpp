@@ -42,21 +42,31 @@ Eigen::Matrix4f clip_from_world(const CameraFrame& camera, float near, float far
   return clip * shift;
 }
 
-/// Distance along the view that holds all that is drawn, with a little air.
-float farthest(const std::vector<MotionMesh>& meshes, const MotionMesh& ground, const GizmoMarks& marks,
-               const CameraFrame& camera) {
-  float far = 1;
-  const auto add = [&](const Vec3f& p) { far = std::max(far, (p - camera.position).dot(camera.forward)); };
+/// Distances along the view that hold all that is drawn.
+struct DepthRange {
+  float near = 0, far = 0;
+};
+
+/// With a little air. A body may be close beside a ground that goes on for kilometres.
+DepthRange depth_range(const std::vector<MotionMesh>& meshes, const MotionMesh& ground, const GizmoMarks& marks,
+                       const CameraFrame& camera) {
+  float near = std::numeric_limits<float>::infinity(), far = 1;
+  const auto add = [&](const Vec3f& p, bool of_ground = false) {
+    const float depth = (p - camera.position).dot(camera.forward);
+    far = std::max(far, depth);
+    if (depth > 0 && !of_ground) near = std::min(near, depth);
+  };
   for (const MotionMesh& mesh : meshes)
     for (const Vec3f& p : mesh.times.back().positions) add(p);
   if (!ground.times.empty())
-    for (const Vec3f& p : ground.times.back().positions) add(p);
+    for (const Vec3f& p : ground.times.back().positions) add(p, true);
   for (const GizmoMarks::Dot& dot : marks.dots) add(dot.at);
   for (const GizmoMarks::Line& line : marks.lines) {
     add(line.from);
     add(line.to);
   }
-  return 1.01f * far;
+  far *= 1.01f;
+  return {std::clamp(0.5f * near, 1e-5f * far, 1e-3f * far), far};
 }
 
 /// The environment as the shaders know it; an image is averaged around pole, horizon and pole.
@@ -317,8 +327,8 @@ DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTra
                               const PreviewStyle& style) {
   const CameraFrame camera = camera_frame(scene.camera, width, height);
   const MotionMesh ground = scene.ground ? ground_mesh(*scene.ground, scene.camera, 1) : MotionMesh{};
-  const float far = farthest(scene.meshes, ground, style.marks, camera);
-  const Eigen::Matrix4f clip = clip_from_world(camera, 1e-3f * far, far);
+  const DepthRange depths = depth_range(scene.meshes, ground, style.marks, camera);
+  const Eigen::Matrix4f clip = clip_from_world(camera, depths.near, depths.far);
   SurfaceView seen{view, exposure, as_gradient(scene.environment), {}, clip, camera.position};
   if (!style.fast) seen.shadows = shadow_views(scene, kMaxPreviewShadows, kShadowSize);
   const std::vector<OverlayVertex> marks = overlay_triangles(style.marks, clip, camera.position, width, height);

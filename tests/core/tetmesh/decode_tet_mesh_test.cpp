@@ -135,6 +135,8 @@ std::string vtk(bool binary, bool with_offsets) {
   const auto wide = [&](std::int64_t v) { return binary ? big_endian(v) : fmt::format("{} ", v); };
   std::string text = fmt::format("# vtk DataFile Version {}\ntwo tetrahedra\n{}\nDATASET UNSTRUCTURED_GRID\n",
                                  with_offsets ? "5.1" : "3.0", binary ? "BINARY" : "ASCII");
+  text += "FIELD FieldData 2\nTIME 1 1 double\n" + real(0.5) + "\nMETADATA\nINFORMATION 0\n\nCYCLE 2 1 int\n" +
+          number(3) + number(4) + "\n";
   text += "POINTS 5 double\n";
   for (const Vec3& p : mesh.nodes)
     for (int k = 0; k < 3; ++k) text += real(p[k]);

@@ -53,11 +53,17 @@ TEST(Png, ReadsBackWhatItWrote) {
   EXPECT_EQ(back.pixels, image.pixels);
 }
 
-TEST(Png, OfTransparentPixelsShowsThemOverBlackWhenReadBack) {
+TEST(Png, KeepsItsTransparencyWhichAnEnvironmentTakesForLessLight) {
   DisplayImage image{2, 1, {200, 100, 50, 200, 100, 50}};
   image.alpha = {255, 0};
-  const DisplayImage back = read_png(written("softreel_alpha.png", encode_png(image)));
-  EXPECT_EQ(back.pixels, (std::vector<std::uint8_t>{200, 100, 50, 0, 0, 0}));
+  const std::string path = written("softreel_alpha.png", encode_png(image));
+  const DisplayImage back = read_png(path);
+  EXPECT_EQ(back.pixels, image.pixels);
+  EXPECT_EQ(back.alpha, image.alpha);
+  EXPECT_EQ(over_grey(back).pixels, (std::vector<std::uint8_t>{200, 100, 50, 128, 128, 128}));
+  const EnvironmentImage light = read_environment(path);
+  EXPECT_GT(light.pixels[0].minCoeff(), 0);
+  EXPECT_EQ(light.pixels[1], Vec3f(0, 0, 0));
 }
 
 TEST(Exr, KeepsWhereACropOrAnOverscanLiesInThePicture) {
@@ -104,6 +110,18 @@ TEST(ReadEnvironment, DecodesEachFormat) {
   EXPECT_NEAR(png.pixels[0].y(), 0.5, 3e-3);
   const Image one{1, 1, {{"R", {7.0f}}, {"G", {8.0f}}, {"B", {9.0f}}}};
   EXPECT_EQ(read_environment(written("softreel_one.exr", encode_exr(one))).pixels[0], Vec3f(7, 8, 9));
+}
+
+TEST(ReadEnvironment, PutsTheDataOfACroppedExrWhereTheyLie) {
+  Image part{2, 1, {{"R", {1.0f, 2.0f}}, {"G", {3.0f, 4.0f}}, {"B", {5.0f, 6.0f}}}};
+  part.left = 3;  // its second pixel is beyond the picture
+  part.top = 1;
+  part.full_width = 4;
+  part.full_height = 2;
+  const EnvironmentImage whole = read_environment(written("softreel_part.exr", encode_exr(part)));
+  ASSERT_EQ(whole.width, 4);
+  ASSERT_EQ(whole.height, 2);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(whole.pixels[k], k == 7 ? Vec3f(1, 3, 5) : Vec3f(0, 0, 0)) << k;
 }
 
 TEST(ReadEnvironment, RefusesWhatIsNoRadiance) {

@@ -1,6 +1,7 @@
 #include "render/image/view_transform.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -35,6 +36,12 @@ TEST(ApplyView, StandardClipsAndFilmicDoesNot) {
     EXPECT_LT(now, 1);
     before = now;
   }
+}
+
+TEST(ApplyView, WhatHasNoNumberAnyMoreIsWhite) {
+  const float infinite = std::numeric_limits<float>::infinity();
+  for (const ViewTransform view : {ViewTransform::Standard, ViewTransform::Filmic, ViewTransform::AcesFit})
+    EXPECT_GT(apply_view(view, Vec3f(infinite, infinite, 1)).x(), 0.98f) << static_cast<int>(view);
 }
 
 TEST(ApplyView, FilmicIsContinuousAndSmoothAtItsKnee) {

@@ -73,6 +73,19 @@ TEST(ObjExport, OfItsOwnResultHasTheSameBytes) {
   EXPECT_EQ(encode_obj(back, back.positions), bytes);
 }
 
+TEST(ObjExport, KeepsGroupsApartWhoseNamesHaveBlanks) {
+  SurfaceMesh mesh = testing::patchwork();
+  ASSERT_GE(mesh.groups.size(), 2U);
+  mesh.groups[0].name = "left arm";
+  mesh.groups[1].name = "left#arm";
+  const SurfaceMesh back = read_back("b.obj", encode_obj(mesh, mesh.positions));
+  ASSERT_EQ(back.groups.size(), mesh.groups.size());
+  EXPECT_EQ(back.groups[0].name, "left_arm");
+  EXPECT_EQ(back.groups[1].name, "left_arm_2");
+  EXPECT_EQ(back.groups[0].vertices, mesh.groups[0].vertices);
+  EXPECT_EQ(back.groups[1].vertices, mesh.groups[1].vertices);
+}
+
 TEST(ObjExport, NormalsAreThoseOfTheVerticesThatCornersName) {
   for (const bool textured : {true, false}) {
     SurfaceMesh mesh = textured ? testing::patchwork() : testing::unit_box();
