@@ -4,8 +4,8 @@
 /// of its points, weighted by their stiffness: never less than the length of the summed force, and equal to it where
 /// all points are equally far. Beyond the limit all springs soften by the same factor, max_force / (k d). So the force
 /// has an energy (k d^2 / 2, growing linearly beyond the limit), and the factor times the stiffness is its secant
-/// stiffness: a step by one solve takes the least of the factors along its way, so that the pull stays implicit and
-/// neither overshoots nor is stronger than its limit.
+/// stiffness: a step by one solve takes the least of the factors along its way, so that the pull stays implicit,
+/// does not overshoot, and is stronger than its limit by a hundredth at most (more where eight solves do not do).
 #pragma once
 
 #include <array>

@@ -172,17 +172,30 @@ void begin_step(Simulator::Parts& parts, StepWork& work, double h) {
     work.offsets[i] = work.step.base_positions[i] - work.positions[i];
 }
 
-/// The state after the step; held nodes reach their targets exactly.
-SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
-  SimulationState next{work.step.base_positions, work.velocities, std::move(work.rotations)};
-  for (std::size_t i = 0; i < parts.nodes(); ++i) {
-    if (work.pinned.held[i] != 0) {
-      next.positions[i] = work.pinned.targets[i];
-    } else {
-      next.velocities[i] += work.change[i];
-      next.positions[i] += work.step.seconds.position * next.velocities[i];
-    }
+/// Those of held nodes are known.
+std::vector<Vec3> final_velocities(const StepWork& work) {
+  std::vector<Vec3> velocities = work.velocities;
+  for (std::size_t i = 0; i < velocities.size(); ++i)
+    if (work.pinned.held[i] == 0) velocities[i] += work.change[i];
+  return velocities;
+}
+
+/// Where such velocities lead; held nodes reach their targets exactly.
+std::vector<Vec3> final_positions(const StepWork& work, std::span<const Vec3> velocities) {
+  std::vector<Vec3> positions = work.step.base_positions;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (work.pinned.held[i] != 0)
+      positions[i] = work.pinned.targets[i];
+    else
+      positions[i] += work.step.seconds.position * velocities[i];
   }
+  return positions;
+}
+
+/// The state after the step.
+SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
+  SimulationState next{{}, final_velocities(work), std::move(work.rotations)};
+  next.positions = final_positions(work, next.velocities);
   next.troubles = std::move(work.troubles);
   next.grabs = parts.state.grabs;
   next.bonds = std::move(work.bonds);
@@ -194,15 +207,16 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
   return next;
 }
 
-/// Where the nodes are at the end if their velocities then are those of `work`, changed.
-std::vector<Vec3> end_positions(const StepWork& work, std::span<const Vec3> change) {
-  std::vector<Vec3> positions = work.step.base_positions;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    positions[i] += work.step.seconds.position * work.velocities[i];
-    if (!change.empty()) positions[i] += work.step.seconds.position * change[i];
-    if (work.pinned.held[i] != 0) positions[i] = work.pinned.targets[i];
+/// Springs softened by the least of the factors so far and those at `ends`. True if one fell by more than kForceExcess.
+bool lower_factors(const std::vector<ActivePull>& pulls, std::span<const Vec3> ends, std::vector<double>& factors) {
+  bool fell = false;
+  for (std::size_t p = 0; p < pulls.size(); ++p) {
+    const double factor = pull_factor(pulls[p], ends);
+    if (factors[p] <= factor * (1 + kForceExcess)) continue;
+    factors[p] = factor;
+    fell = true;
   }
-  return positions;
+  return fell;
 }
 
 /// One solve, and another where a limited pull would be stronger than it may at the end. Its springs are softened by
@@ -212,25 +226,16 @@ SolveReport solve_within_limits(Simulator::Parts& parts, StepWork& work, StepRep
   const auto is_limited = [](const ActivePull& pull) { return pull.max_force > 0; };
   if (std::none_of(work.pulls.begin(), work.pulls.end(), is_limited)) return solve_once(parts, work, step);
   const std::vector<ActivePull> limited = work.pulls;
-  std::vector<double> factors(limited.size(), 1);
-  std::vector<Vec3> ends = end_positions(work, {});
-  for (std::size_t p = 0; p < limited.size(); ++p) factors[p] = pull_factor(limited[p], work.positions);
+  std::vector<double> factors;
+  for (const ActivePull& pull : limited) factors.push_back(pull_factor(pull, work.positions));
+  lower_factors(limited, final_positions(work, work.velocities), factors);
   SolveReport report;
   int iterations = 0;
   for (int solves = 0; solves < kMostSolves; ++solves) {
-    bool too_strong = solves == 0;
-    for (std::size_t p = 0; p < limited.size(); ++p) {
-      const double factor = pull_factor(limited[p], ends);
-      if (factors[p] <= factor * (1 + kForceExcess)) continue;
-      factors[p] = factor;
-      too_strong = true;
-    }
-    if (!too_strong) break;
     for (std::size_t p = 0; p < limited.size(); ++p) work.pulls[p] = softened(limited[p], factors[p]);
     report = solve_once(parts, work, step);
     iterations += report.iterations;
-    if (!report.ok()) break;
-    ends = end_positions(work, work.change);
+    if (!report.ok() || !lower_factors(limited, final_positions(work, final_velocities(work)), factors)) break;
   }
   report.iterations = iterations;
   return report;

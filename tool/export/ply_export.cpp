@@ -31,7 +31,9 @@ class PlyEncoder {
     write_header();
     write_vertices();
     for (std::size_t p = 0; p < mesh_.polygons.size(); ++p) write_face(p);
-    bytes_.resize(static_cast<std::size_t>(at_ - bytes_.data()));
+    const auto size = static_cast<std::size_t>(at_ - bytes_.data());
+    CHECK(size <= bytes_.size());
+    bytes_.resize(size);
     return std::move(bytes_);
   }
 

@@ -79,6 +79,7 @@ class VtkReader {
         name = in_.word();
       }
       const std::size_t components = in_.count(1), tuples = in_.count(1);
+      if (components > 0 && tuples > in_.rest().size() / components + 1) throw in_.cut_off();
       const std::string type(in_.word());
       if (is_binary_) {
         in_.line();

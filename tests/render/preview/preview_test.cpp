@@ -46,6 +46,21 @@ TEST(EglPreview, SilhouettesCoincideWithThePathTracers) {
   EXPECT_EQ(different, 0);
 }
 
+TEST(EglPreview, DrawsABodyThatIsCloseBeforeAGroundOfKilometres) {
+  std::string reason;
+  const std::unique_ptr<Preview> preview = egl_preview_or_null(reason);
+  if (preview == nullptr) GTEST_SKIP() << reason;
+  Scene scene = glowing_ball();
+  scene.meshes = {sphere(Vec3f(0, 0, 0), 0.05f, scene.meshes[0].appearance)};
+  scene.camera.position = Vec3f(0, 0.1f, 0.4f);
+  scene.camera.target = Vec3f::Zero();
+  scene.ground.emplace();
+  scene.ground->height = -0.05f;
+  scene.ground->size = 2000;
+  const DisplayImage image = preview->draw(scene, 64, 64, ViewTransform::Raw, 0);
+  EXPECT_GT(pixel_of(image, scene.camera, Vec3f::Zero()).minCoeff(), 250);
+}
+
 TEST(EglPreview, DrawsTheSkyAsThePathTracerSeesIt) {
   std::string reason;
   const std::unique_ptr<Preview> preview = egl_preview_or_null(reason);
