@@ -133,6 +133,7 @@ int run_export(const ExportOptions& options) {
       body.write(frame);
     }
     session.console().advance(frame - frames.first + 1, fmt::format("frame {}", frame));
+    session.keep_within_limit();
   }
   for (ExportSeries& one : series) one.finish();
   RunReport report = session.report("export", run);

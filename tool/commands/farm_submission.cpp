@@ -79,7 +79,7 @@ std::vector<SubmittedTask> tasks_of(const FarmJob& job, const std::string& numbe
 std::string run_slurm(const std::vector<std::string>& command) {
   std::string said;
   const int status = run_process(command, &said);
-  if (status == -1 || status == 127)
+  if (status < 0 || status == 127)
     throw work_error(fmt::format(
         "{}: the program was not found: this machine has no Slurm.\n  Run softreel farm where jobs are submitted from, "
         "or write a template for another farm with --engine openjd.",

@@ -39,7 +39,7 @@ std::string checksum_of_program() {
   std::string said;
   // Not /proc/self/exe: of the child that would be its own file.
   const int status = run_process({"sha256sum", fmt::format("/proc/{}/exe", ::getpid())}, &said);
-  if (status == -1 || status == 127)
+  if (status < 0 || status == 127)
     throw work_error(
         "sha256sum: the program was not found.\n  Install the package coreutils: nodes compare their softreel.");
   if (status != 0) throw work_error(fmt::format("sha256sum ended with status {}: {}", status, said));

@@ -63,7 +63,7 @@ class Playblast {
     const std::string path = outputs_.frame_path(frame, "png");
     const StageKey key = file_key(frame);
     if (outputs_.is_done(path, key)) {
-      saved_seconds_ += outputs_.entry(path)->seconds;
+      if (const auto entry = outputs_.entry(path)) saved_seconds_ += entry->seconds;
       return false;
     }
     if (!preview_) {

@@ -39,15 +39,15 @@ void remove_outdated(const Session& session, PictureStage& pictures, Outputs& ou
   const int removed = pictures.remove_outdated(session.frames().first, session.frames().last);
   if (removed > 0) session.context().log.info(fmt::format("{} outdated pictures removed", removed));
   const ShotSettings& settings = session.shot().settings;
-  if (is_movie_outdated(session.shot(), settings.first_frame, settings.last_frame, outputs))
-    outputs.remove({outputs.path("mp4")});
+  outputs.remove_if({outputs.path("mp4")}, [&](const std::string&) {
+    return is_movie_outdated(session.shot(), settings.first_frame, settings.last_frame, outputs);
+  });
   // One of the sheet command, of other frames or columns, goes with the pictures that it shows.
-  const std::string sheet = outputs.path("sheet.png");
-  const bool is_outdated =
-      session.shot().output.contact_sheet
-          ? is_sheet_outdated(session.shot(), frames_of_sheet(session), SheetOptions().columns, outputs)
-          : removed > 0 && outputs.entry(sheet).has_value();
-  if (is_outdated) outputs.remove({sheet});
+  outputs.remove_if({outputs.path("sheet.png")}, [&](const std::string& sheet) {
+    return session.shot().output.contact_sheet
+               ? is_sheet_outdated(session.shot(), frames_of_sheet(session), SheetOptions().columns, outputs)
+               : removed > 0 && outputs.entry(sheet).has_value();
+  });
 }
 
 }  // namespace

@@ -1,7 +1,12 @@
 // A turntable: the shot at one frame, with the camera on a circle round what it looks at.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <map>
 #include <numbers>
+#include <set>
+#include <string_view>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -42,28 +47,78 @@ class Turntable {
   Turntable(Session& session, const SceneStage& scenes, Outputs& outputs)
       : session_(session), scenes_(scenes), outputs_(outputs) {}
 
+  /// Nothing of another turn or an older shot stays beside the pictures of these contents: a killed run leaves no
+  /// mixture.
+  void remove_outdated(const std::vector<StageKey>& contents) {
+    const auto count = static_cast<int>(contents.size());
+    std::map<std::string, StageKey> keys;  // by path
+    std::set<std::filesystem::path> extensions;
+    for (int picture = 1; picture <= count; ++picture)
+      for (const File& file : files(picture, count, contents[static_cast<std::size_t>(picture - 1)])) {
+        keys[file.path] = file.key;
+        extensions.insert(std::filesystem::path(file.path).extension());
+      }
+    std::vector<std::string> paths = outputs_.paths();
+    for (const auto& [path, key] : keys) paths.push_back(path);
+    const std::string movie = outputs_.path("mp4");
+    outputs_.remove_if(paths, [&](const std::string& path) {
+      if (!extensions.contains(std::filesystem::path(path).extension())) return false;
+      const auto wanted = keys.find(path);
+      const OutputState state = outputs_.claimed_state(path, wanted == keys.end() ? StageKey() : wanted->second);
+      return state == OutputState::Stale || state == OutputState::Unknown;
+    });
+    outputs_.remove_if({movie},
+                       [&](const std::string&) { return is_movie_outdated(session_.shot(), 1, count, outputs_); });
+  }
+
   /// Writes the files of a picture unless they are there. True if it was traced.
   bool make(int picture, int count, const Scene& scene, const StageKey& content) {
     const Shot& shot = session_.shot();
-    const BurnIn words{shot.settings.name, fmt::format("{} / {}", picture, count)};
-    const StageKey png = file_key("png", content, shot, words), exr = file_key("exr", content, shot, words);
-    const std::string png_path = outputs_.frame_path(picture, "png"), exr_path = outputs_.frame_path(picture, "exr");
-    if ((!shot.output.png || outputs_.is_done(png_path, png)) && (!shot.output.exr || outputs_.is_done(exr_path, exr)))
+    const std::vector<File> wanted = files(picture, count, content);
+    if (std::all_of(wanted.begin(), wanted.end(),
+                    [&](const File& file) { return outputs_.is_done(file.path, file.key); }))
       return false;
     const auto start = std::chrono::steady_clock::now();
     if (!tracer_) tracer_ = std::make_unique<PathTracer>(session_.context().threads, session_.context().times);
     const Image image = tracer_->render(scene, shot.render.params, [] { return cancellation().load(); });
     const double seconds = seconds_since(start);
-    if (shot.output.exr) outputs_.write(exr_path, exr, encode_exr(image), seconds);
-    if (!shot.output.png) return true;
-    DisplayImage display = to_display(image, shot.output.view, static_cast<float>(shot.output.exposure));
-    scenes_.draw_legend(display);
-    if (shot.output.burn_in) burn_in(display, words);
-    outputs_.write(png_path, png, encode_png(display), seconds);
+    for (const File& file : wanted) {
+      const bool is_exr = file.extension == std::string_view("exr");
+      outputs_.write(file.path, file.key, is_exr ? encode_exr(image) : encode_display(image, words(picture, count)),
+                     seconds);
+    }
     return true;
   }
 
  private:
+  struct File {
+    const char* extension;
+    std::string path;
+    StageKey key;
+  };
+
+  BurnIn words(int picture, int count) const {
+    return {session_.shot().settings.name, fmt::format("{} / {}", picture, count)};
+  }
+
+  std::vector<File> files(int picture, int count, const StageKey& content) const {
+    const Shot& shot = session_.shot();
+    std::vector<File> files;
+    for (const auto& [extension, wanted] : {std::pair("exr", shot.output.exr), std::pair("png", shot.output.png)})
+      if (wanted)
+        files.push_back({extension, outputs_.frame_path(picture, extension),
+                         file_key(extension, content, shot, words(picture, count))});
+    return files;
+  }
+
+  std::vector<std::uint8_t> encode_display(const Image& image, const BurnIn& words) const {
+    const OutputSettings& output = session_.shot().output;
+    DisplayImage display = to_display(image, output.view, static_cast<float>(output.exposure));
+    scenes_.draw_legend(display);
+    if (output.burn_in) burn_in(display, words);
+    return encode_png(display);
+  }
+
   Session& session_;
   const SceneStage& scenes_;
   Outputs& outputs_;
@@ -86,12 +141,19 @@ int run_turntable(const ShotOptions& options, int count) {
   scene.next_camera.reset();  // nothing moves
   scene.camera_motion.clear();
   const Camera start = scene.camera;
+  const auto turn = [&](int picture) { scene.camera = turned(start, static_cast<double>(picture - 1) / count); };
+  std::vector<StageKey> contents;
+  for (int picture = 1; picture <= count; ++picture) {
+    turn(picture);
+    contents.push_back(scenes.content_key(frame, scene));
+  }
   Turntable turntable(session, scenes, outputs);
+  turntable.remove_outdated(contents);
   int traced = 0;
   session.console().begin("pictures", count);
   for (int picture = 1; picture <= count; ++picture) {
-    scene.camera = turned(start, static_cast<double>(picture - 1) / count);
-    traced += turntable.make(picture, count, scene, scenes.content_key(frame, scene)) ? 1 : 0;
+    turn(picture);
+    traced += turntable.make(picture, count, scene, contents[static_cast<std::size_t>(picture - 1)]) ? 1 : 0;
     session.console().advance(picture, fmt::format("picture {}", picture));
   }
   RunReport report = session.report("turntable", run);

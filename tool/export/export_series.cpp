@@ -36,9 +36,8 @@ SampleTimes sample_times(const ExportSettings& settings, const ExportFrames& fra
 }
 
 struct ExportSeries::Growing {
-  Growing(std::string where, StageKey made_of) : path(std::move(where)), key(std::move(made_of)), file(path) {}
+  Growing(std::string path, StageKey made_of) : key(std::move(made_of)), file(std::move(path)) {}
 
-  std::string path;
   StageKey key;
   AtomicFile file;
   ByteHasher checksum;
@@ -91,8 +90,7 @@ void ExportSeries::append(int sample, const ExportSample& data, double seconds) 
 void ExportSeries::close() {
   growing_->writer->finish();
   growing_->writer.reset();
-  growing_->file.commit();
-  outputs_.enter(growing_->path, growing_->key, growing_->checksum.key(), growing_->seconds);
+  outputs_.commit(growing_->file, growing_->key, growing_->checksum.key(), growing_->seconds);
   growing_.reset();
   ++counts_.written;
 }

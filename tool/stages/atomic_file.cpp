@@ -22,12 +22,6 @@ namespace {
 
 constexpr std::string_view kTemporaryEnding = ".part";
 
-/// ".NAME.HOST.PID.N.part" of any host.
-bool is_temporary_name(const std::string& name) {
-  static const std::regex form(R"(\..+\.[^/]+\.[0-9]+\.[0-9]+\.part)");
-  return std::regex_match(name, form);
-}
-
 std::string advice(int code) {
   if (code == ENOSPC || code == EDQUOT)
     return "Free some space, or choose another folder with --output (--cache, if it is the cache).";
@@ -52,6 +46,11 @@ fs::path folder_of(const std::string& path) {
 
 }  // namespace
 
+bool is_temporary_name(const std::string& name) {
+  static const std::regex form(R"(\..+\.[^/]+\.[0-9]+\.[0-9]+\.part)");
+  return std::regex_match(name, form);
+}
+
 AtomicFile::AtomicFile(std::string path, Writer writer) : path_(std::move(path)) {
   const std::string folder = folder_of(path_).string();
   make_folder(folder);
@@ -65,8 +64,9 @@ AtomicFile::AtomicFile(std::string path, Writer writer) : path_(std::move(path))
     temporary_ = temporary_name(path_);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0) fail("cannot be created");
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);
-  } while (::access(temporary_.c_str(), F_OK) != 0);
+    // A sweep that holds it is about to remove it. Where there are no locks (another errno) nothing is swept either.
+  } while ((::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) ||
+           ::access(temporary_.c_str(), F_OK) != 0);
 }
 
 AtomicFile::~AtomicFile() {
@@ -106,8 +106,12 @@ void AtomicFile::give_name() {
   temporary_.clear();
 }
 
-void AtomicFile::commit(Flush flush) {
-  if (flush == Flush::ToDisk && ::fsync(descriptor_) != 0) fail("cannot be written");
+void AtomicFile::flush() {
+  if (::fsync(descriptor_) != 0) fail("cannot be written");
+}
+
+void AtomicFile::commit(Flush when) {
+  if (when == Flush::ToDisk) flush();
   give_name();
   const int descriptor = descriptor_;
   descriptor_ = -1;
@@ -175,8 +179,9 @@ int sweep_temporaries(const std::string& folder) {
     if (!is_temporary_name(name)) continue;
     const int descriptor = ::open(entry->path().c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor < 0) continue;
-    const auto lock = FileLock::try_adopt(descriptor, FileLock::Sharing::Exclusive);
-    if (lock && ::unlink(entry->path().c_str()) == 0) ++swept;
+    const bool nobody_writes = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;  // false too where there are no locks
+    if (nobody_writes && ::unlink(entry->path().c_str()) == 0) ++swept;
+    ::close(descriptor);
   }
   return swept;
 }

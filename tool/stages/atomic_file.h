@@ -23,6 +23,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
+  const std::string& path() const { return path_; }
   const std::string& temporary_path() const { return temporary_; }
   void write(std::span<const std::uint8_t> bytes);
 
@@ -30,8 +31,10 @@ class AtomicFile {
     ToDisk,  ///< survives a power cut: for files that others read
     Later    ///< survives the process: for files whose checksum is verified whenever they are read
   };
+  /// To the disk, which takes its time: `commit(Flush::Later)` is then a matter of a moment.
+  void flush();
   /// Flushes, and gives the file its name, in the place of one that is there.
-  void commit(Flush flush = Flush::ToDisk);
+  void commit(Flush when = Flush::ToDisk);
 
  private:
   [[noreturn]] void fail(const char* what) const;
@@ -58,7 +61,11 @@ void make_folder(const std::string& path);
 /// Throws work_error unless a file can be made in the folder, which is made if need be: asked before long work.
 void require_writable(const std::string& folder);
 
-/// Removes what killed processes left unfinished in a folder; files that are being written stay. Returns how many.
+/// Whether a file of this name is one that is being written, or was: ".NAME.HOST.PID.N.part" of any host.
+bool is_temporary_name(const std::string& name);
+
+/// Removes what killed processes left unfinished in a folder; files that are being written stay, and all where the file
+/// system has no locks that tell. Returns how many.
 int sweep_temporaries(const std::string& folder);
 
 }  // namespace softreel

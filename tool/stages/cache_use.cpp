@@ -1,6 +1,7 @@
 #include "tool/stages/cache_use.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 
@@ -93,6 +94,7 @@ std::vector<CachedFile> list_files(const Cache& cache) {
     if (!entry->is_regular_file(none)) continue;
     const std::string stage = entry->path().parent_path().filename().string();
     if (entry.depth() != 1 || stage == "uses" || stage == "locks") continue;
+    if (is_temporary_name(entry->path().filename().string())) continue;  // see remove_remains
     CachedFile file{entry->path(), cache_item(stage, entry->path().filename().string()), 0, {}};
     struct stat facts {};
     if (::stat(file.path.c_str(), &facts) != 0) continue;
@@ -185,9 +187,13 @@ CacheUse::CacheUse(const Cache& cache, const std::string& shot_path, const std::
   const FileLock no_removal = FileLock::take(removal_lock(cache), FileLock::Sharing::Shared);
   std::error_code none;
   fs::create_directories(uses_folder(cache), none);
-  path_ = (uses_folder(cache) / fmt::format("{}.{}.{}{}", owner_, host_name(), ::getpid(), kRunning)).string();
-  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) return;  // a cache that cannot be written: nobody can remove anything either
+  // Containers may have one host name, and each the same numbers of processes.
+  for (int k = 0; descriptor_ < 0; ++k) {
+    path_ = (uses_folder(cache) / fmt::format("{}.{}.{}.{}{}", owner_, host_name(), ::getpid(), k, kRunning)).string();
+    descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST)
+      return;  // a cache that cannot be written: nobody can remove anything either
+  }
   ::flock(descriptor_, LOCK_EX);
   remove_at_sudden_end(path_);
   append(fmt::format("{}\n{}\n{}\n", owner_, real(shot_path).string(), host_name()));

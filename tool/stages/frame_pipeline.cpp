@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <thread>
+#include <vector>
 
 #include "core/base/timer.h"
 #include "tool/stages/stage_names.h"
@@ -36,7 +37,6 @@ class Pipeline {
         writer_(depth_) {}
 
   PictureCounts run(int first, int last) {
-    std::vector<int> busy;
     {
       int next = first;
       AheadStream<FrameJob> ahead(depth_, [&]() -> std::optional<FrameJob> {
@@ -44,9 +44,9 @@ class Pipeline {
         return prepare(next++);
       });
       while (auto job = next_job(ahead))
-        if (!finish(*job)) busy.push_back(job->frame);
+        if (!finish(*job)) busy_.push_back(job->frame);
     }
-    for (const int frame : busy) wait_for(frame);
+    for (const int frame : busy_) wait_for(frame);
     writer_.finish();
     return counts_;
   }
@@ -132,8 +132,8 @@ class Pipeline {
     if (source == PictureSource::Linked) ++counts_.linked;
     if (source == PictureSource::Traced) ++counts_.traced;
     if (source != PictureSource::Traced) counts_.saved_seconds += pictures_.seconds(frame);
-    // The frame before is needed no more, not even for motion blur.
-    if (frame > run_.shot().settings.first_frame)
+    // The frame before is needed no more, not even for motion blur; those of busy frames may have to be made yet.
+    if (busy_.empty() && frame > run_.shot().settings.first_frame)
       for (std::size_t b = 0; b < run_.body_count(); ++b)
         use_.release(cache_item(kSimulationStage, run_.simulation(b).frame_key(frame - 1)));
     done_(frame, source);
@@ -145,6 +145,7 @@ class Pipeline {
   CacheUse& use_;
   const FrameDone& done_;
   std::size_t depth_;
+  std::vector<int> busy_;      ///< frames that other processes are tracing
   std::set<StageKey> sent_;    ///< trace keys of frames that this run sent to be traced; of the preparing thread
   std::set<StageKey> traced_;  ///< contents of this run
   PictureCounts counts_;

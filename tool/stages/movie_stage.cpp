@@ -1,6 +1,8 @@
 #include "tool/stages/movie_stage.h"
 
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/timer.h"
 #include "tool/stages/atomic_file.h"
+#include "tool/stages/byte_hasher.h"
 #include "tool/stages/process.h"
 
 namespace softreel {
@@ -58,22 +61,22 @@ std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, 
   const std::string frames = frame_list(first, last, outputs);
   list.write(std::span(reinterpret_cast<const std::uint8_t*>(frames.data()), frames.size()));
   std::string said;
-  const int status =
-      run_process(ffmpeg_command(shot, last - first + 1, list.temporary_path(), movie.temporary_path()), &said);
+  const int status = run_process(ffmpeg_command(shot, last - first + 1, list.temporary_path(), movie.temporary_path()),
+                                 &said, &context.cancelled);
   context.stop_if_cancelled();
-  if (status == -1 || status == 127)
+  if (status < 0)
     throw work_error(fmt::format(
-        "{}: the movie was not made: the program ffmpeg was not found.\n  All frames are there. Install the package "
-        "ffmpeg and run again (only the movie will be made), or set output.movie = false.",
-        path));
+        "{}: the movie was not made: the program ffmpeg {}.\n  All frames are there. {} (only the movie will be made), "
+        "or set output.movie = false.",
+        path, status == -ENOENT ? "was not found" : fmt::format("could not be started: {}", std::strerror(-status)),
+        status == -ENOENT ? "Install the package ffmpeg and run again" : "Run again"));
   // ffmpeg ends with 0 even if it could not write the end of the file, but it says so.
   if (status != 0 || !said.empty())
     throw work_error(
         fmt::format("{}: the movie was not made: ffmpeg ended with status {}: {}\n  All frames are there. "
                     "Run again to try once more, or set output.movie = false.",
                     path, status, said));
-  movie.commit();
-  outputs.enter(path, key, seconds_since(start));
+  outputs.commit(movie, key, hash_file(movie.temporary_path()), seconds_since(start));
   return path;
 }
 
@@ -81,9 +84,12 @@ bool is_movie_done(const Shot& shot, int first, int last, const Outputs& outputs
   return outputs.is_done(outputs.path("mp4"), movie_key(shot, first, last, outputs));
 }
 
+OutputState movie_state(const Shot& shot, int first, int last, const Outputs& outputs) {
+  return outputs.state(outputs.path("mp4"), movie_key(shot, first, last, outputs));
+}
+
 bool is_movie_outdated(const Shot& shot, int first, int last, const Outputs& outputs) {
-  const std::string path = outputs.path("mp4");
-  return outputs.claimed_state(path, movie_key(shot, first, last, outputs)) == OutputState::Stale;
+  return outputs.claimed_state(outputs.path("mp4"), movie_key(shot, first, last, outputs)) == OutputState::Stale;
 }
 
 }  // namespace softreel

@@ -16,6 +16,9 @@ std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, 
 /// True if the movie is there, whole, and made of the frames as the manifest has them now.
 bool is_movie_done(const Shot& shot, int first, int last, const Outputs& outputs);
 
+/// The same, with the reason. Reads the movie.
+OutputState movie_state(const Shot& shot, int first, int last, const Outputs& outputs);
+
 /// True if a movie is there that was not made of the frames as the manifest has them now.
 bool is_movie_outdated(const Shot& shot, int first, int last, const Outputs& outputs);
 

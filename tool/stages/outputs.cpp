@@ -1,5 +1,6 @@
 #include "tool/stages/outputs.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -93,6 +94,13 @@ std::optional<OutputEntry> Outputs::entry(const std::string& path) const {
   return found->second;
 }
 
+std::vector<std::string> Outputs::paths() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> paths;
+  for (const auto& [name, entry] : contents_.entries) paths.push_back((fs::path(folder_) / name).string());
+  return paths;
+}
+
 std::optional<SettingsSnapshot> Outputs::settings(const std::string& id) const {
   const std::lock_guard lock(mutex_);
   const auto found = contents_.settings.find(id);
@@ -106,18 +114,23 @@ std::string Outputs::simulated_settings() const {
 }
 
 OutputState Outputs::claimed_state(const std::string& path, const StageKey& key) const {
+  return claimed_state(path, key, entry(path));
+}
+
+OutputState Outputs::claimed_state(const std::string& path, const StageKey& key,
+                                   const std::optional<OutputEntry>& known) {
   std::error_code none;
   if (!fs::exists(path, none)) return OutputState::Missing;
-  const std::optional<OutputEntry> known = entry(path);
   if (!known) return OutputState::Unknown;
   return known->key == key ? OutputState::Done : OutputState::Stale;
 }
 
 OutputState Outputs::state(const std::string& path, const StageKey& key) const {
-  const OutputState claimed = claimed_state(path, key);
+  const std::optional<OutputEntry> known = entry(path);  // once: other processes may change it while the file is read
+  const OutputState claimed = claimed_state(path, key, known);
   if (claimed != OutputState::Done) return claimed;
   try {
-    return hash_file(path) == entry(path)->checksum ? OutputState::Done : OutputState::Damaged;
+    return hash_file(path) == known->checksum ? OutputState::Done : OutputState::Damaged;
   } catch (const Error&) {
     return OutputState::Damaged;  // a folder of this name, say
   }
@@ -130,52 +143,67 @@ bool Outputs::is_done(const std::string& path, const StageKey& key) const {
   return found == OutputState::Done;
 }
 
-void Outputs::insert(const std::string& path, const OutputEntry& entry) {
-  update([&](Contents& contents) { contents.entries[name_of(path)] = entry; });
+bool Outputs::insert(const std::string& path, const OutputEntry& entry, const std::function<bool()>& give_name) {
+  return update([&](Contents& contents) {
+    if (!give_name()) return false;
+    contents.entries[name_of(path)] = entry;
+    return true;
+  });
 }
 
 void Outputs::write(const std::string& path, const StageKey& key, std::span<const std::uint8_t> bytes, double seconds) {
-  write_file(path, bytes);
-  insert(path, {key, hash_bytes(bytes), seconds, settings_id_});
+  AtomicFile file(path);
+  file.write(bytes);
+  commit(file, key, hash_bytes(bytes), seconds);
 }
 
 void Outputs::link(const std::string& path, const StageKey& key, const std::string& stored_path,
                    std::span<const std::uint8_t> bytes, double seconds) {
-  if (!link_file(stored_path, path)) write_file(path, bytes);
-  insert(path, {key, hash_bytes(bytes), seconds, settings_id_});
+  const OutputEntry entry{key, hash_bytes(bytes), seconds, settings_id_};
+  if (!insert(path, entry, [&] { return link_file(stored_path, path); })) write(path, key, bytes, seconds);
 }
 
-void Outputs::enter(const std::string& path, const StageKey& key, double seconds) {
-  enter(path, key, hash_file(path), seconds);
-}
-
-void Outputs::enter(const std::string& path, const StageKey& key, const StageKey& checksum, double seconds) {
-  insert(path, {key, checksum, seconds, settings_id_});
-}
-
-void Outputs::remove(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths) {
-    std::error_code failed;
-    fs::remove(path, failed);
-    if (failed) throw work_error(fmt::format("{}: cannot be removed: {}.", path, failed.message()));
-  }
-  update([&](Contents& contents) {
-    for (const std::string& path : paths) contents.entries.erase(name_of(path));
+void Outputs::commit(AtomicFile& file, const StageKey& key, const StageKey& checksum, double seconds) {
+  file.flush();  // before others have to wait for it
+  insert(file.path(), {key, checksum, seconds, settings_id_}, [&] {
+    file.commit(AtomicFile::Flush::Later);
+    return true;
   });
+}
+
+int Outputs::remove_if(const std::vector<std::string>& paths,
+                       const std::function<bool(const std::string& path)>& is_outdated) {
+  if (std::none_of(paths.begin(), paths.end(), is_outdated)) return 0;  // as a rule: the manifest stays as it is
+  int removed = 0;
+  update([&](Contents& contents) {
+    for (const std::string& path : paths) {
+      if (!is_outdated(path)) continue;
+      std::error_code failed;
+      fs::remove(path, failed);
+      if (failed) throw work_error(fmt::format("{}: cannot be removed: {}.", path, failed.message()));
+      contents.entries.erase(name_of(path));
+      ++removed;
+    }
+    return removed > 0;
+  });
+  return removed;
 }
 
 void Outputs::note_simulation() {
   if (simulated_settings() == settings_id_) return;
-  update([&](Contents& contents) { contents.simulated = settings_id_; });
+  update([&](Contents& contents) {
+    contents.simulated = settings_id_;
+    return true;
+  });
 }
 
-void Outputs::update(const std::function<void(Contents&)>& change) {
+bool Outputs::update(const std::function<bool(Contents&)>& change) {
   const std::lock_guard in_process(mutex_);
   make_folder(folder_);
   // The lock file holds a random text that each writer replaces: whoever finds another one reads the manifest again.
   const FileLock lock = FileLock::take(lock_path());
   if (revision_.empty() || stored_revision() != revision_) contents_ = read();
-  change(contents_);
+  if (!change(contents_)) return false;
   if (!settings_id_.empty()) contents_.settings[settings_id_] = settings_;
   std::set<std::string> used{contents_.simulated, settings_id_};
   for (const auto& [name, entry] : contents_.entries) used.insert(entry.settings);
@@ -185,6 +213,7 @@ void Outputs::update(const std::function<void(Contents&)>& change) {
   write_manifest();
   revision_ = fmt::format("{:08x}{:08x}", std::random_device{}(), std::random_device{}());
   store_revision(revision_);
+  return true;
 }
 
 void Outputs::store_revision(const std::string& revision) const {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/log.h"
+#include "tool/stages/atomic_file.h"
 #include "tool/stages/key.h"
 
 namespace softreel {
@@ -30,8 +31,8 @@ using SettingsSnapshot = std::map<std::string, std::string>;
 enum class OutputState { Missing, Unknown, Stale, Damaged, Done };
 
 /// One output folder of one shot. A file counts as done only if the manifest has its key and its bytes have the
-/// manifest's checksum. The manifest is written after each file, merged with what other processes wrote meanwhile.
-/// Thread-safe.
+/// manifest's checksum. The manifest is written with each file, merged with what other processes wrote meanwhile; while
+/// a file gets its name and its entry, no other process changes or removes either. Thread-safe.
 class Outputs {
  public:
   /// Reads the manifest if there is one; a damaged one is said, and all files count as unknown.
@@ -54,19 +55,20 @@ class Outputs {
   /// True if the file is there, whole, and made from this key; a damaged one is said.
   bool is_done(const std::string& path, const StageKey& key) const;
   std::optional<OutputEntry> entry(const std::string& path) const;
+  /// Of all files in the manifest.
+  std::vector<std::string> paths() const;
   std::optional<SettingsSnapshot> settings(const std::string& id) const;
 
-  /// Writes the file, then the manifest. Throws work_error.
+  /// Writes the file and the manifest. Throws work_error.
   void write(const std::string& path, const StageKey& key, std::span<const std::uint8_t> bytes, double seconds);
-  /// Gives a stored file this name too (a copy where links do not reach), then writes the manifest.
+  /// Gives a stored file this name too (a copy where links do not reach), and writes the manifest.
   void link(const std::string& path, const StageKey& key, const std::string& stored_path,
             std::span<const std::uint8_t> bytes, double seconds);
-  /// Enters a file that somebody else wrote (ffmpeg).
-  void enter(const std::string& path, const StageKey& key, double seconds);
-  /// The same for a file whose checksum is known.
-  void enter(const std::string& path, const StageKey& key, const StageKey& checksum, double seconds);
-  /// Removes files, and their entries.
-  void remove(const std::vector<std::string>& paths);
+  /// Commits a file that was written elsewhere, and writes the manifest. checksum: of its bytes.
+  void commit(AtomicFile& file, const StageKey& key, const StageKey& checksum, double seconds);
+  /// Removes the files, and their entries, of which `is_outdated` says so: by what the manifest says now, whatever
+  /// other processes make meanwhile. It may ask this object. Returns how many.
+  int remove_if(const std::vector<std::string>& paths, const std::function<bool(const std::string& path)>& is_outdated);
 
   /// Last simulation of the shot in this folder: the id of its settings, empty if there was none.
   std::string simulated_settings() const;
@@ -78,18 +80,22 @@ class Outputs {
     std::map<std::string, SettingsSnapshot> settings;
     std::string simulated;
   };
-  void update(const std::function<void(Contents&)>& change);
+  static OutputState claimed_state(const std::string& path, const StageKey& key,
+                                   const std::optional<OutputEntry>& known);
+  /// change: false if it changed nothing after all; that is returned.
+  bool update(const std::function<bool(Contents&)>& change);
   Contents read() const;
   std::string lock_path() const;
   std::string stored_revision() const;
   void store_revision(const std::string& revision) const;
   void write_manifest() const;
   std::string manifest_path() const;
-  void insert(const std::string& path, const OutputEntry& entry);
+  /// give_name: false if it could not, and nothing is entered; that is returned.
+  bool insert(const std::string& path, const OutputEntry& entry, const std::function<bool()>& give_name);
 
   std::string folder_, shot_name_;
   const Log& log_;
-  mutable std::mutex mutex_;  ///< of what follows
+  mutable std::recursive_mutex mutex_;  ///< of what follows; recursive: a change asks for what is there
   Contents contents_;
   SettingsSnapshot settings_;
   std::string settings_id_;

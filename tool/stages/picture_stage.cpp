@@ -1,6 +1,7 @@
 #include "tool/stages/picture_stage.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -76,14 +77,17 @@ double PictureStage::seconds(int frame) const {
 }
 
 int PictureStage::remove_outdated(int first, int last) {
-  std::vector<std::string> outdated;
+  std::vector<std::string> paths;
+  std::map<std::string, StageKey> keys;  // by path
   for (int frame = first; frame <= last; ++frame)
     for (const File& file : files(frame, trace_key(frame))) {
-      const OutputState state = outputs_.claimed_state(file.path, file.key);
-      if (state == OutputState::Stale || state == OutputState::Unknown) outdated.push_back(file.path);
+      paths.push_back(file.path);
+      keys[file.path] = file.key;
     }
-  if (!outdated.empty()) outputs_.remove(outdated);
-  return static_cast<int>(outdated.size());
+  return outputs_.remove_if(paths, [&](const std::string& path) {
+    const OutputState state = outputs_.claimed_state(path, keys.at(path));
+    return state == OutputState::Stale || state == OutputState::Unknown;
+  });
 }
 
 bool PictureStage::recall(int frame, const StageKey& picture) {
@@ -106,6 +110,10 @@ bool PictureStage::recall(int frame, const StageKey& picture) {
     outputs_.link(one.file.path, one.file.key, stored, one.bytes, one.record.seconds);
     if (picture != trace) store_picture_record(context_.cache, one.file.key, one.record);
   }
+  // So that a change of view or exposure can develop this frame as well, without looking at the scene.
+  const auto linear =
+      picture != trace ? load_picture_record(context_.cache, file_key(frame, kLinear, picture)) : std::nullopt;
+  if (linear) store_picture_record(context_.cache, file_key(frame, kLinear, trace), *linear);
   return true;
 }
 

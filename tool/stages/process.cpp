@@ -49,26 +49,28 @@ std::string read_to_end(int descriptor) {
 
 }  // namespace
 
-int run_process(std::vector<std::string> arguments, std::string* said) {
+int run_process(std::vector<std::string> arguments, std::string* said, const std::atomic<bool>* cancelled) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
+  int pipe_ends[2] = {-1, -1};
+  if (said != nullptr && ::pipe2(pipe_ends, O_CLOEXEC) != 0) return -errno;
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  int pipe_ends[2] = {-1, -1};
-  if (said != nullptr && ::pipe2(pipe_ends, O_CLOEXEC) != 0) return -1;
   if (said != nullptr) {
     posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], 1);
     posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], 2);
   }
   pid_t child = 0;
   int failed = 0;
+  bool is_cancelled = false;
   {
     const OpenToSignals attributes;
     const std::lock_guard lock(children_mutex());
-    failed = posix_spawnp(&child, argv[0], &actions, &attributes.value, argv.data(), environ);
-    if (failed == 0) children().insert(child);
+    is_cancelled = cancelled != nullptr && cancelled->load();
+    if (!is_cancelled) failed = posix_spawnp(&child, argv[0], &actions, &attributes.value, argv.data(), environ);
+    if (!is_cancelled && failed == 0) children().insert(child);
   }
   posix_spawn_file_actions_destroy(&actions);
   if (said != nullptr) {
@@ -76,7 +78,8 @@ int run_process(std::vector<std::string> arguments, std::string* said) {
     *said = read_to_end(pipe_ends[0]);
     ::close(pipe_ends[0]);
   }
-  if (failed != 0) return -1;
+  if (is_cancelled) return 128 + SIGTERM;
+  if (failed != 0) return -failed;
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   const std::lock_guard lock(children_mutex());

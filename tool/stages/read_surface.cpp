@@ -180,6 +180,8 @@ ReadSurface read_surface(const std::string& path, SurfaceUse use, const RunConte
   const auto read = [&] {
     Listener listener(context.log);
     surface = read_anew(path, listener.log());
+    if (stored_key(path) != key)  // or the new file would be taken for the old one for ever
+      throw work_error(fmt::format("{}: changed while it was being read.\n  Run again.", path));
     return pack(surface, listener.messages());
   };
   const Cache::Produced produced = context.cache.produce(

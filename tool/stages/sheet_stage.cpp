@@ -63,6 +63,10 @@ bool is_sheet_done(const Shot& shot, const std::vector<int>& frames, int columns
   return outputs.is_done(outputs.path("sheet.png"), sheet_key(shot, frames, columns, outputs));
 }
 
+OutputState sheet_state(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs) {
+  return outputs.state(outputs.path("sheet.png"), sheet_key(shot, frames, columns, outputs));
+}
+
 bool is_sheet_outdated(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs) {
   return outputs.claimed_state(outputs.path("sheet.png"), sheet_key(shot, frames, columns, outputs)) ==
          OutputState::Stale;

@@ -26,6 +26,9 @@ std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int col
 /// True if the sheet is there, whole, and made of the frames as the manifest has them now.
 bool is_sheet_done(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs);
 
+/// The same, with the reason. Reads the sheet.
+OutputState sheet_state(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs);
+
 /// True if a sheet is there that was not made of the frames as the manifest has them now.
 bool is_sheet_outdated(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs);
 

@@ -14,6 +14,7 @@
 #include "tool/stages/picture_stage.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/settings_snapshot.h"
+#include "tool/stages/sheet_stage.h"
 #include "tool/stages/shot_run.h"
 #include "tool/stages/simulate_key.h"
 #include "tool/stages/stage_names.h"
@@ -33,6 +34,7 @@ using ResultKeys = std::map<ResultName, StageKey>;
 
 constexpr const char* kPictures = "pictures";
 constexpr const char* kMovie = "movie";
+constexpr const char* kSheet = "sheet";
 
 /// Keys of all results of a shot.
 ResultKeys find_keys(ShotRun& run, Outputs& outputs) {
@@ -74,8 +76,9 @@ class StatusFinder {
     }
     release_unneeded();
     add_movie();
+    add_sheet();
     const auto place = [](const StageStatus& status) {
-      constexpr std::array kOrder{kDialStage, kTetrahedraStage, kSimulationStage, kPictures, kMovie};
+      constexpr std::array kOrder{kDialStage, kTetrahedraStage, kSimulationStage, kPictures, kMovie, kSheet};
       return std::find(kOrder.begin(), kOrder.end(), status.stage) - kOrder.begin();
     };
     std::stable_sort(statuses_.begin(), statuses_.end(),
@@ -200,17 +203,24 @@ class StatusFinder {
     const ShotSettings& settings = shot_.settings;
     if (!shot_.output.movie || !shot_.output.png || settings.first_frame == settings.last_frame) return;
     StageStatus status{kMovie, "mp4", {}, false, {}};
-    const std::string path = outputs_.path("mp4");
-    Condition condition = Condition::Done;
-    if (!std::filesystem::exists(path)) {
-      condition = Condition::Missing;
-    } else if (is_movie_outdated(shot_, settings.first_frame, settings.last_frame, outputs_) || !pictures_done()) {
-      condition = Condition::Stale;
-    } else if (outputs_.state(path, outputs_.entry(path)->key) == OutputState::Damaged) {
-      condition = Condition::Damaged;
-    }
-    status.frames[condition] = {0};
+    status.frames[whole_condition(movie_state(shot_, settings.first_frame, settings.last_frame, outputs_))] = {0};
     statuses_.push_back(std::move(status));
+  }
+
+  void add_sheet() {
+    if (!shot_.output.contact_sheet || !shot_.output.png) return;
+    StageStatus status{kSheet, "png", {}, false, {}};
+    const std::vector<int> frames =
+        sheet_frames(shot_.settings.first_frame, shot_.settings.last_frame, SheetOptions().count);
+    status.frames[whole_condition(sheet_state(shot_, frames, SheetOptions().columns, outputs_))] = {0};
+    statuses_.push_back(std::move(status));
+  }
+
+  /// Of a file that is made of all pictures. One that nobody knows is not of this shot.
+  Condition whole_condition(OutputState state) const {
+    if (state == OutputState::Missing) return Condition::Missing;
+    if (state == OutputState::Damaged) return Condition::Damaged;
+    return state == OutputState::Done && pictures_done() ? Condition::Done : Condition::Stale;
   }
 
   bool pictures_done() const {

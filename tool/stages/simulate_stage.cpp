@@ -62,7 +62,9 @@ BodySimulation::BodySimulation(const Shot& shot, const BodySettings& settings, S
       source_(std::move(source)),
       constraints_(std::move(constraints)),
       touched_(source_.frame_keys.size(), false),
-      frame_number_(first_simulated_frame(shot) - 1) {}
+      frame_number_(first_simulated_frame(shot) - 1),
+      goes_back_(shot.render.shutter > 0 || shot.render.params.channels.has(PictureChannel::Motion)),
+      other_number_(frame_number_) {}
 
 BodySimulation::~BodySimulation() = default;
 
@@ -143,19 +145,47 @@ void BodySimulation::note(int frame) {
   if (frame_.energy) energies_[frame] = *frame_.energy;
 }
 
+/// A frame counts as loaded once, however often it is.
+void BodySimulation::note_loaded(int frame, double seconds) {
+  simulator_holds_frame_ = false;
+  if (!touched_[static_cast<std::size_t>(frame - first_simulated_frame(shot_))]) {
+    counts_.loaded += 1;
+    counts_.saved_seconds += seconds;
+  }
+  note(frame);
+}
+
+/// From now on there is no frame_.
+void BodySimulation::put_aside() {
+  if (goes_back_) {
+    other_ = std::move(frame_);
+    other_number_ = frame_number_;
+  }
+  frame_ = {};
+  frame_number_ = first_simulated_frame(shot_) - 1;
+  simulator_holds_frame_ = false;
+}
+
+bool BodySimulation::take_other(int frame) {
+  if (other_number_ != frame) return false;
+  std::swap(frame_, other_);
+  std::swap(frame_number_, other_number_);
+  simulator_holds_frame_ = false;
+  return true;
+}
+
 bool BodySimulation::load(int frame) {
   const auto stored = context_.cache.load(kSimulationStage, frame_key(frame));
   if (!stored) return false;
+  put_aside();
   frame_ = unpack_body_frame(stored->bytes);
-  simulator_holds_frame_ = false;
-  note(frame);
-  counts_.loaded += 1;
-  counts_.saved_seconds += stored->seconds;
+  note_loaded(frame, stored->seconds);
   return true;
 }
 
 /// From frame_, which is the one before, or from rest.
 void BodySimulation::produce(int frame) {
+  if (starts_from_rest(frame)) put_aside();
   BodyFrame made;
   const auto simulate = [&] {
     made = simulated(frame);
@@ -163,25 +193,23 @@ void BodySimulation::produce(int frame) {
   };
   const Cache::Produced produced = context_.cache.produce(
       kSimulationStage, frame_key(frame), [&] { context_.stop_if_cancelled(); }, simulate);
-  if (produced.from_cache) {
-    made = unpack_body_frame(produced.bytes);
-    simulator_holds_frame_ = false;
-    counts_.loaded += 1;
-    counts_.saved_seconds += produced.seconds;
-  } else {
-    counts_.computed += 1;
-    counts_.work += made.work;
-    if (made.recovering_elements > 0) counts_.recoveries.push_back({settings_.name, frame, made.recovering_elements});
-  }
-  frame_ = std::move(made);
+  const bool holds = simulator_holds_frame_ && !produced.from_cache;
+  put_aside();
+  frame_ = produced.from_cache ? unpack_body_frame(produced.bytes) : std::move(made);
+  if (produced.from_cache) return note_loaded(frame, produced.seconds);
+  simulator_holds_frame_ = holds;
+  counts_.computed += 1;
+  counts_.work += frame_.work;
+  if (frame_.recovering_elements > 0) counts_.recoveries.push_back({settings_.name, frame, frame_.recovering_elements});
   note(frame);
 }
 
 const BodyFrame& BodySimulation::at(int frame) {
   if (group_ != nullptr) return group_->at(member_, frame);
   if (frame_number_ == frame) return frame_;
+  goes_back_ = goes_back_ || frame < frame_number_;
   int from = frame;  // the nearest frame at or before this one that is at hand
-  while (!(from == frame_number_ || load(from) || starts_from_rest(from))) --from;
+  while (!(from == frame_number_ || take_other(from) || load(from) || starts_from_rest(from))) --from;
   if (from != frame_number_) produce(from);
   while (frame_number_ < frame) produce(frame_number_ + 1);
   return frame_;

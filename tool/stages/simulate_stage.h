@@ -110,11 +110,14 @@ class BodySimulation {
  private:
   Simulator& simulator();
   SimulationState rest_state() const;
+  void put_aside();
+  bool take_other(int frame);
   bool load(int frame);
   void produce(int frame);
   BodyFrame simulated(int frame);
   FrameEnergy measured_energy();
   void note(int frame);
+  void note_loaded(int frame, double seconds);
   bool starts_from_rest(int frame) const;
   void advance(int frame, BodyFrame& result);
   SimulationWork find_equilibrium(int frame);
@@ -134,6 +137,10 @@ class BodySimulation {
   bool simulator_holds_frame_ = false;
   BodyFrame frame_;
   int frame_number_;  ///< of frame_; before the first simulated frame while there is none
+  /// Motion blur and differences between frames go back by one, which must not need the cache: it may be unwritable.
+  bool goes_back_;
+  BodyFrame other_;  ///< what frame_ was before, if frames are asked for again
+  int other_number_;
   SimulationCounts counts_;
   std::map<int, FrameEnergy> energies_;
   std::optional<double> rest_potential_;  ///< of gravity, J; found when the first energy is measured

@@ -1,5 +1,6 @@
 // Golden images with their records, burn-ins, contact sheets and turntables, through the built program.
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -224,6 +225,27 @@ TEST(Turntable, TurnsTheCameraOnceRoundTheBody) {
   EXPECT_GT(back[0], 2 * back[1]) << "seen from behind, from the left";
   EXPECT_GT(right[0] + right[1], 3 * (left[0] + left[1])) << "beside the lamp all is lit, opposite to it nothing";
   EXPECT_EQ(json::parse(turn().out)["pictures"]["traced"], 0);
+}
+
+TEST(Turntable, LeavesNothingOfALongerTurnBesideAShorterOne) {
+  const std::string folder = shot_folder("turns");
+  const auto turn = [&](const std::string& options) {
+    const Outcome outcome =
+        run(fmt::format("softreel render {0}/shot.toml --frames 3 --output {0}/out --quiet --set output.movie=true {1}",
+                        folder, options));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  };
+  const auto pictures = [&] {
+    std::set<std::string> names;
+    for (const std::string& name : files_under(folder + "/out"))
+      if (name.starts_with("ball.turntable.") && name.ends_with(".png")) names.insert(name);
+    return names;
+  };
+  turn("--turntable 4");
+  EXPECT_EQ(pictures().size(), 4U);
+  turn("--turntable 2 --set environment.zenith=[0.9,0.2,0.1]");
+  EXPECT_EQ(pictures(), (std::set<std::string>{"ball.turntable.0001.png", "ball.turntable.0002.png"}));
+  EXPECT_TRUE(exists(folder + "/out/ball.turntable.mp4"));
 }
 
 }  // namespace

@@ -260,6 +260,29 @@ TEST_F(Skipping, EqualFramesAreLinkedNotTraced) {
             std::filesystem::hard_link_count(folder_ + "/out/ball.0001.png"));
 }
 
+TEST_F(Skipping, ExposureOfEqualFramesNeedsNoSimulation) {
+  start("equal_exposure");
+  const std::string still = "--set shot.mode=static --set 'body.ball.pull[0].keys=[{frame=1,translate=[0.1,0,0]}]' ";
+  EXPECT_EQ(run_shot(still).linked, 3);
+  std::filesystem::remove_all(folder_ + "/out/.cache/2/simulation");
+  const Work work = run_shot(still + "--set output.exposure=1.5");
+  EXPECT_EQ(work.traced, 0);
+  EXPECT_EQ(work.computed, 0);
+}
+
+TEST_F(Skipping, FramesBesideTheOneThatIsMadeNeedNoCache) {
+  start("no_cache");
+  write_text(folder_ + "/a_file", "no folder can be made here");
+  const Outcome outcome =
+      run(fmt::format("softreel render {0}/shot.toml --output {0}/out --cache {0}/a_file/cache --quiet --json --set "
+                      "render.shutter=0.5 --set output.exr=true --set 'render.channels=[\"motion\"]'",
+                      folder_));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["simulation"]["computed"], 4);
+  EXPECT_EQ(report["pictures"]["traced"], 4);
+}
+
 TEST_F(Skipping, ExportAndPreviewNeverSimulateAgainAndWriteOnce) {
   start("export");
   run_shot("", "simulate");

@@ -122,6 +122,24 @@ TEST_F(Status, CleanRemovesWhatTheShotAsItIsDoesNotNeed) {
   EXPECT_TRUE(exists(folder_ + "/out/ball.0001.png"));
 }
 
+TEST_F(Status, KnowsMoviesAndSheetsThatAreNotOfTheShot) {
+  start("movie");
+  const std::string both = "--set output.movie=true --set output.contact_sheet=true";
+  render();
+  EXPECT_EQ(stage("movie"), json());
+  EXPECT_EQ(stage("movie", both)["condition"], "missing");
+  EXPECT_EQ(stage("sheet", both)["condition"], "missing");
+  EXPECT_EQ(softreel("status", "--exit-code " + both).status, 1);
+  write_text(folder_ + "/out/ball.mp4", "made by hand");
+  EXPECT_EQ(stage("movie", both)["condition"], "stale");
+  render(both);
+  EXPECT_EQ(stage("movie", both)["condition"], "done");
+  EXPECT_EQ(stage("sheet", both)["condition"], "done");
+  EXPECT_EQ(softreel("status", "--exit-code " + both).status, 0);
+  std::filesystem::remove(folder_ + "/out/ball.sheet.png");
+  EXPECT_EQ(softreel("status", "--exit-code " + both).status, 1);
+}
+
 TEST_F(Status, CleanLeavesWhatAnotherShotInTheCacheNeeds) {
   start("others");
   const std::string cache = fmt::format("--cache {}/cache", folder_);

@@ -204,6 +204,48 @@ TEST(Outputs, CountAFileAsDoneOnlyWhileItIsWholeAndOfTheSameKey) {
   EXPECT_EQ(outputs.state(folder.path + "/shot.0002.png", "key"), OutputState::Unknown);
 }
 
+TEST(Outputs, RemoveNothingThatAnotherProcessHasJustMade) {
+  const Folder folder("fresh");
+  const Log log;
+  const Bytes bytes{1};
+  const auto remove_outdated = [](Outputs& outputs, const std::string& path) {
+    return outputs.remove_if({path}, [&](const std::string& asked) {
+      const OutputState state = outputs.claimed_state(asked, "new");
+      return state == OutputState::Stale || state == OutputState::Unknown;
+    });
+  };
+  Outputs(folder.path, "shot", log).write(folder.path + "/shot.mp4", "old", bytes, 0);
+  Outputs a(folder.path, "shot", log);
+  const std::string picture = a.frame_path(1, "png"), movie = a.path("mp4");
+  for (const std::string& path : {picture, movie}) {
+    Outputs b(folder.path, "shot", log);
+    a.write(path, "new", bytes, 0);
+    EXPECT_NE(b.claimed_state(path, "new"), OutputState::Done);  // by what it read before
+    EXPECT_EQ(remove_outdated(b, path), 0);
+    EXPECT_TRUE(a.is_done(path, "new")) << path;
+    EXPECT_TRUE(b.is_done(path, "new")) << path;
+  }
+  a.write(picture, "newer", bytes, 0);
+  EXPECT_EQ(remove_outdated(a, picture), 1);
+  EXPECT_FALSE(fs::exists(picture));
+}
+
+TEST(AtomicFile, IsNotSweptAwayWhileItIsMade) {
+  const Folder folder("swept");
+  std::atomic<bool> done = false;
+  std::thread sweeper([&] {
+    while (!done) sweep_temporaries(folder.path);
+  });
+  int lost = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const AtomicFile file(folder.path + "/movie", AtomicFile::Writer::Others);
+    lost += fs::exists(file.temporary_path()) ? 0 : 1;
+  }
+  done = true;
+  sweeper.join();
+  EXPECT_EQ(lost, 0);
+}
+
 TEST(Outputs, OfSeveralProcessesKeepEachOthersEntries) {
   const Folder folder("merged");
   const Log log;

@@ -3,10 +3,14 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <future>
+#include <optional>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+
+#include "tool/stages/atomic_file.h"
 
 namespace softreel {
 namespace {
@@ -58,6 +62,33 @@ TEST_F(CacheUseTest, WhatARunningJobClaimsStaysWhateverTheLimit) {
   }
   cut_cache(cache_, 0);
   EXPECT_FALSE(has(2)) << "the job has ended";
+}
+
+TEST_F(CacheUseTest, WhatIsBeingWrittenStaysWhateverTheLimit) {
+  AtomicFile growing(cache_.path("simulation", "new"), AtomicFile::Writer::Others);
+  growing.write(Bytes(100));
+  cut_cache(cache_, 0);
+  empty_cache(cache_, false);
+  clean_cache(cache_, "owner", {}, false);
+  EXPECT_NO_THROW(growing.commit());
+  EXPECT_TRUE(cache_.has("simulation", "new"));
+}
+
+TEST_F(CacheUseTest, TwoJobsOfOneNameAndNumberDoNotWaitForEachOther) {
+  store_ten();
+  CacheUse first(cache_, "shot.toml", "out");  // as two containers have them that share the host's name
+  first.claim({"simulation/1"});
+  std::optional<CacheUse> second;
+  auto made = std::async(std::launch::async, [&] { second.emplace(cache_, "shot.toml", "out"); });
+  ASSERT_EQ(made.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  second->claim({"simulation/2"});
+  cut_cache(cache_, 0);
+  EXPECT_TRUE(has(1));
+  EXPECT_TRUE(has(2));
+  second.reset();
+  cut_cache(cache_, 0);
+  EXPECT_TRUE(has(1)) << "the first goes on";
+  EXPECT_FALSE(has(2));
 }
 
 TEST_F(CacheUseTest, ADryRunCountsTheSameAndRemovesNothing) {

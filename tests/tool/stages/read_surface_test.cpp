@@ -1,13 +1,16 @@
 #include "tool/stages/read_surface.h"
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "core/base/error.h"
 #include "tool/stages/stage_names.h"
 
 namespace softreel {
@@ -58,6 +61,30 @@ class ReadSurfaceTest : public ::testing::Test {
   static constexpr std::size_t kMegabyte = 1100000;
   fs::path folder_ = fs::temp_directory_path() / fmt::format("softreel_read_surface_{}", ::getpid());
 };
+
+TEST_F(ReadSurfaceTest, DoesNotTakeAFileThatChangesMeanwhileForTheOldOne) {
+  const std::string path = write_box(kMegabyte);
+  const Log silent;
+  const Cache cache((folder_ / "cache").string(), Cache::Storing::Required, silent);
+  const StageKey old_key = read(path, SurfaceUse::LookUp).surface.stored;
+  auto claim = cache.try_claim(kSurfaceStage, old_key);  // as another program does that is reading it
+  ASSERT_TRUE(claim);
+  std::string error;
+  std::thread reader([&] {
+    try {
+      read(path, SurfaceUse::Keep);
+    } catch (const Error& problem) {
+      error = problem.what();
+    }
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  write_box(kMegabyte, 0.25);
+  claim.reset();
+  reader.join();
+  EXPECT_NE(error.find("changed while it was being read"), std::string::npos) << error;
+  write_box(kMegabyte);
+  EXPECT_EQ(read(path, SurfaceUse::Keep).surface.mesh.positions.front(), Vec3(0, 0, 0));
+}
 
 TEST_F(ReadSurfaceTest, SaysAndGivesTheSameFromTheCacheAsFromTheFile) {
   const std::string path = write_box(kMegabyte);
