@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <sstream>
@@ -24,7 +25,7 @@ struct Counters {
 
 struct Settings {
   std::vector<std::string> roots, read_only;
-  std::optional<std::uint64_t> kill_at, disk_bytes, short_seed, clock_seed;
+  std::optional<std::uint64_t> kill_at, disk_bytes, short_seed, pause_seed, clock_seed;
   Counters own{};
   Counters* counters = &own;
 };
@@ -61,6 +62,7 @@ Settings* read_settings() {
   settings->kill_at = number_of("ABUSE_KILL_AT");
   settings->disk_bytes = number_of("ABUSE_DISK_BYTES");
   settings->short_seed = number_of("ABUSE_SHORT");
+  settings->pause_seed = number_of("ABUSE_PAUSE");
   settings->clock_seed = number_of("ABUSE_CLOCK");
   if (const char* file = std::getenv("ABUSE_COUNT_FILE")) settings->counters = shared_counters(file);
   return settings;
@@ -154,7 +156,15 @@ bool is_watched(const std::string& path) {
   return is_under(path, settings().roots) || is_under(path, settings().read_only);
 }
 
+void pause_beside(const std::string& path) {
+  if (!settings().pause_seed || !is_under(path, settings().roots)) return;
+  const std::uint64_t number = draw(*settings().pause_seed);
+  const timespec time{0, static_cast<long>(number / 2 % 3'000'000)};
+  if (number % 2 == 0) ::syscall(SYS_nanosleep, &time, nullptr);
+}
+
 bool may_change(const std::string& path) {
+  pause_beside(path);
   if (is_under(path, settings().roots) && is_last_call()) end_process();
   return !is_read_only(path);
 }

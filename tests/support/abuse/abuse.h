@@ -7,6 +7,7 @@
 ///   ABUSE_DISK_BYTES=N            the N-th byte written under the roots is the last; every further one gives ENOSPC
 ///   ABUSE_READ_ONLY=DIR[:DIR...]  every change under these gives EROFS (root may write where permissions forbid)
 ///   ABUSE_SHORT=SEED              reads and writes under the roots take a random part, or end with EINTR
+///   ABUSE_PAUSE=SEED              up to 3 ms pass before and after every second counted call: what may meet does
 ///   ABUSE_CLOCK=SEED              the time of day jumps by up to 10 years from call to call
 ///   ABUSE_CHILDREN=1              processes that the program starts are abused too; else they are left alone
 #pragma once
@@ -32,6 +33,9 @@ bool may_change(const std::string& path);
 
 /// Whether nothing may be changed at `path`; errno is set then.
 bool is_read_only(const std::string& path);
+
+/// Lets some time pass, or none, beside a call that changes `path`.
+void pause_beside(const std::string& path);
 
 /// Before a write of `size` bytes to `fd`: how many may be written, 0 with errno set if none. `write_half` is called
 /// before the process is killed in the middle of this write.

@@ -20,7 +20,13 @@ int open_at(int folder, const char* path, int flags, mode_t mode) {
   const bool only_opens =
       (flags & O_ACCMODE) == O_RDONLY && (flags & O_TRUNC) == 0 && ::syscall(SYS_faccessat, folder, path, F_OK) == 0;
   if (changes && !only_opens && !may_change(path_of(folder, path))) return -1;
-  return static_cast<int>(::syscall(SYS_openat, folder, path, flags, mode));
+  const auto opened = static_cast<int>(::syscall(SYS_openat, folder, path, flags, mode));
+  if (changes && !only_opens) {
+    const int code = errno;
+    abuse::pause_beside(path_of(folder, path));
+    errno = code;
+  }
+  return opened;
 }
 
 mode_t mode_argument(int flags, va_list arguments) {

@@ -62,6 +62,26 @@ TEST_F(Together, TheyMakeOneOutputOfOneShot) {
   }
 }
 
+/// Removed pictures would come back from the cache, as a rule before the other program misses them.
+TEST_F(Together, TheSecondRemovesNothingThatTheFirstHasJustMade) {
+  for (int seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE(fmt::format("pauses of seed {}", seed));
+    work_ = new_folder("together_work");
+    std::vector<std::string> talking = command(work_ + "/out", kShot);
+    std::erase(talking, "--quiet");
+    const Abuse pauses{{"ROOT", work_}, {"PAUSE", std::to_string(seed)}};
+    RunningProgram first("first", talking, pauses);
+    std::this_thread::sleep_for(std::chrono::milliseconds(40 * seed));
+    RunningProgram second("second", talking, pauses);
+    for (RunningProgram* program : {&first, &second}) {
+      const Outcome outcome = program->wait();
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+      EXPECT_EQ(outcome.err.find("outdated pictures removed"), std::string::npos) << outcome.err;
+    }
+    expect_as("reference", "out");
+  }
+}
+
 TEST_F(Together, TheyMakeTwoOutputsOfOneShot) {
   for (const int offset : kOffsets) {
     SCOPED_TRACE(fmt::format("{} ms apart", offset));

@@ -230,22 +230,6 @@ TEST(Outputs, RemoveNothingThatAnotherProcessHasJustMade) {
   EXPECT_FALSE(fs::exists(picture));
 }
 
-TEST(AtomicFile, IsNotSweptAwayWhileItIsMade) {
-  const Folder folder("swept");
-  std::atomic<bool> done = false;
-  std::thread sweeper([&] {
-    while (!done) sweep_temporaries(folder.path);
-  });
-  int lost = 0;
-  for (int k = 0; k < 20000; ++k) {
-    const AtomicFile file(folder.path + "/movie", AtomicFile::Writer::Others);
-    lost += fs::exists(file.temporary_path()) ? 0 : 1;
-  }
-  done = true;
-  sweeper.join();
-  EXPECT_EQ(lost, 0);
-}
-
 TEST(Outputs, OfSeveralProcessesKeepEachOthersEntries) {
   const Folder folder("merged");
   const Log log;
