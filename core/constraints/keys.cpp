@@ -1,6 +1,7 @@
 #include "core/constraints/keys.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace softreel {
 
@@ -37,9 +38,15 @@ Vec3 Transform::apply(const Vec3& p) const {
 
 Index active_range(const std::vector<FrameRange>& ranges, double frame) {
   if (ranges.empty()) return 0;
-  const auto found = std::find_if(ranges.begin(), ranges.end(), [frame](const FrameRange& range) {
-    return range.first <= frame && frame <= range.last;
-  });
+  const auto holds = [&](const FrameRange& range) { return range.first <= frame && frame <= range.last; };
+  // Between two frames of which one ends a range and the next begins one, the earlier goes on.
+  const auto goes_on = [&](const FrameRange& range) {
+    return range.last < frame && range.last == std::floor(range.last) &&
+           std::any_of(ranges.begin(), ranges.end(),
+                       [&](const FrameRange& next) { return frame < next.first && next.first == range.last + 1; });
+  };
+  auto found = std::find_if(ranges.begin(), ranges.end(), holds);
+  if (found == ranges.end()) found = std::find_if(ranges.begin(), ranges.end(), goes_on);
   return found == ranges.end() ? -1 : static_cast<Index>(found - ranges.begin());
 }
 

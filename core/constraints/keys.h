@@ -65,10 +65,11 @@ struct FrameRange {
   double first = 0, last = 0;
 };
 
-/// Number of the first range that `frame` lies in, 0 where there is no range at all, which means always; else -1.
+/// Number of the first range that `frame` lies in, 0 where there is no range at all, which means always; else -1. A
+/// range of whole frames goes on until the next one begins if that is a frame later: steps lie between frames.
 Index active_range(const std::vector<FrameRange>& ranges, double frame);
 
-/// True if `frame` lies in one of the ranges; no range at all means always.
+/// True if active_range finds one.
 bool is_active(const std::vector<FrameRange>& ranges, double frame);
 
 }  // namespace softreel

@@ -142,7 +142,9 @@ void Simulator::Parts::join(const std::vector<GlueBond>& bonds) {
   std::vector<Joint> needed = find_joints(model.glues, bonds);
   if (needed == joints) return;
   joints = std::move(needed);
-  pieces = join_pieces(find_pieces(model.mesh.tets, nodes()), model.mesh.tets, joints);
+  unjoined_pieces = find_pieces(model.mesh.tets, nodes());
+  pieces = join_pieces(unjoined_pieces, model.mesh.tets, joints);
+  if (joints.empty()) unjoined_pieces = {};
   matrix = {join_pattern(stiffness_pattern(model.mesh.tets, static_cast<Index>(nodes())), model.mesh.tets, joints), {}};
   multigrid = Multigrid(model.mesh, youngs_moduli(model.materials), matrix.pattern,
                         with_poisson_ratio(params.multigrid, model.materials), threads);

@@ -49,8 +49,8 @@ struct SolverParams {
   int substeps = 1;         ///< per frame; with step_error, the fewest
   double step_error = 0;    ///< largest estimated error of a step over the body's size; 0: steps are fixed
   int max_substeps = 1024;  ///< per frame, with step_error
-  /// A body at rest is not stepped: one whose nodes would all move less than this times its size by their velocities,
-  /// whose forces balance to force_tolerance and whose pins do not move. 0: every body is stepped.
+  /// A body at rest is not stepped: one whose nodes would all move less than this times its size in 1/24 s, whose
+  /// forces balance to force_tolerance in each piece and whose pins do not move. 0: every body is stepped.
   double rest_tolerance = 1e-7;
   /// Within a frame, elements whose matrix would change by less than this times `tolerance` since it was made keep it.
   double matrix_lag = 0.1;

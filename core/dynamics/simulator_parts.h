@@ -39,7 +39,6 @@ struct CoarseLag {
 /// at its forces again.
 struct KnownRest {
   bool known = false;  ///< false whenever the state changes
-  double seconds = 0;  ///< of the step that was left out
   std::vector<std::uint8_t> held;
   std::vector<ActivePull> pulls;
 };
@@ -61,7 +60,8 @@ struct Simulator::Parts {
   NodalMasses masses;
   NodePins pins;
   std::vector<Joint> joints;  ///< those that pieces, matrix and multigrid are made for
-  Pieces pieces;
+  Pieces pieces;              ///< joints tie theirs together
+  Pieces unjoined_pieces;     ///< the same without joints; empty while there are none
   BlockMatrixd matrix;
   Multigrid multigrid;
   std::vector<double> damping_stiffness;  ///< per element, s
@@ -87,6 +87,8 @@ struct Simulator::Parts {
   std::vector<Mat3> stresses;  ///< per element; empty until statics or a step in double
 
   std::size_t nodes() const { return model.mesh.nodes.size(); }
+  /// Those that elements make by themselves.
+  const Pieces& mesh_pieces() const { return joints.empty() ? pieces : unjoined_pieces; }
 
   /// True if an element has damping of its stiffness.
   bool damps_strain() const;

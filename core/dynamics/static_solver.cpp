@@ -39,33 +39,42 @@ bool is_negligible(std::span<const Vec3> direction, std::span<const Vec3> positi
   return true;
 }
 
-bool is_positive(double x) {
-  return x > 0;  // false for not a number
+/// Of the pieces that are above theirs; of all, if none is.
+double least_round_off(const StaticState& state) {
+  double least = std::numeric_limits<double>::infinity(), of_all = 0;
+  for (const PieceBalance& piece : state.pieces) {
+    if (piece.residual > piece.round_off) least = std::min(least, piece.round_off);
+    of_all = std::hypot(of_all, piece.round_off);
+  }
+  return std::min(least, of_all);
 }
 
-/// P-wave modulus: the greatest stiffness of the law.
-double greatest_modulus(const ElasticLaw& law) {
-  return law.lambda + 2 * law.mu;
+bool is_positive(double x) {
+  return x > 0;  // false for not a number
 }
 
 /// Mass proportional, so that a free piece has its centre of mass where it was; nothing on pieces that a pin holds,
 /// which holds a whole tetrahedron and with it every rigid motion. Glue may hold by a point or two: a piece that only
 /// it ties to a held one is not held by it.
 std::vector<double> rigid_shifts(const Simulator::Parts& parts, std::span<const std::uint8_t> held) {
-  const Pieces own = parts.joints.empty() ? parts.pieces : find_pieces(parts.model.mesh.tets, parts.nodes());
+  const Pieces& own = parts.mesh_pieces();
+  const auto piece = [&](Index node) { return static_cast<std::size_t>(own.of_node[static_cast<std::size_t>(node)]); };
   std::vector<std::uint8_t> fixed(static_cast<std::size_t>(own.count), 0);
   for (std::size_t i = 0; i < held.size(); ++i)
-    if (held[i] != 0) fixed[static_cast<std::size_t>(own.of_node[i])] = 1;
-  double stiffness = 0, mass = 0;
+    if (held[i] != 0) fixed[piece(static_cast<Index>(i))] = 1;
+  // Of each piece by itself: what is little to a stiff one may be more than a soft one resists with.
+  std::vector<double> stiffness(fixed.size(), 0), mass(fixed.size(), 0);
   for (std::size_t e = 0; e < parts.body.tets.size(); ++e) {
     const ElementShape& shape = parts.body.shapes[e];
-    stiffness += shape.volume * greatest_modulus(parts.body.laws[e]) * shape.gradients.squaredNorm();
+    stiffness[piece(parts.body.tets[e][0])] +=
+        shape.volume * p_wave_modulus(parts.body.laws[e]) * shape.gradients.squaredNorm();
   }
-  for (const double m : parts.masses.mass) mass += m;
+  for (std::size_t i = 0; i < held.size(); ++i) mass[piece(static_cast<Index>(i))] += parts.masses.mass[i];
   std::vector<double> shifts(held.size(), 0);
-  for (std::size_t i = 0; i < held.size(); ++i)
-    if (fixed[static_cast<std::size_t>(own.of_node[i])] == 0)
-      shifts[i] = kRigidShift * stiffness / mass * parts.masses.mass[i];
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    const std::size_t p = piece(static_cast<Index>(i));
+    if (fixed[p] == 0) shifts[i] = kRigidShift * stiffness[p] / mass[p] * parts.masses.mass[i];
+  }
   return shifts;
 }
 
@@ -120,65 +129,8 @@ void StaticSolver::evaluate(StaticState& state) {
   for (const ActivePull& pull : pulls_) state.energy += pull_energy(pull, state.positions);
   terms += std::abs(state.energy);
   state.energy_noise += 100 * std::numeric_limits<double>::epsilon() * terms;
-  measure_scales(state);
+  measure_pieces(state);
   state.residual = std::sqrt(dot(state.forces, state.forces));
-}
-
-void StaticSolver::measure_scales(StaticState& state) {
-  const ElasticBody& body = parts_.body;
-  std::vector<double> magnitudes(state.positions.size(), 0), errors(state.positions.size(), 0);
-  for (std::size_t e = 0; e < body.tets.size(); ++e) {
-    const ElementShape& shape = body.shapes[e];
-    double strain_error = 0;
-    for (std::size_t k = 0; k < 4; ++k)
-      strain_error += shape.gradients.col(static_cast<Index>(k)).norm() *
-                      state.positions[static_cast<std::size_t>(body.tets[e][k])].norm();
-    strain_error = std::numeric_limits<double>::epsilon() * (strain_error + 4);
-    for (std::size_t k = 0; k < 4; ++k) {
-      const auto node = static_cast<std::size_t>(body.tets[e][k]);
-      const Vec3 gradient = shape.gradients.col(static_cast<Index>(k));
-      magnitudes[node] += (parts_.stresses[e] * gradient).norm();
-      errors[node] += shares_[e] * shape.volume * greatest_modulus(body.laws[e]) * gradient.norm() * strain_error;
-    }
-  }
-  // What rounding its point and its target does to a spring's force. The force itself is no scale: stiff pulls that
-  // work against each other would hide all others.
-  for (const ActivePull& pull : pulls_) {
-    const double factor = pull_factor(pull, state.positions);
-    for (const Spring& spring : pull.springs) {
-      double size = spring.target.norm();
-      for (std::size_t k = 0; k < spring.count; ++k)
-        size += std::abs(spring.weights[k]) * state.positions[static_cast<std::size_t>(spring.nodes[k])].norm();
-      for (std::size_t k = 0; k < spring.count; ++k)
-        errors[static_cast<std::size_t>(spring.nodes[k])] +=
-            std::numeric_limits<double>::epsilon() * factor * spring.stiffness * std::abs(spring.weights[k]) * size;
-    }
-  }
-  double scale = 0, error = 0, work = 0;
-  piece_scales_.assign(static_cast<std::size_t>(parts_.pieces.count), 0);
-  for (std::size_t i = 0; i < magnitudes.size(); ++i) {
-    double magnitude = magnitudes[i] + parts_.masses.mass[i] * parts_.model.gravity.norm();
-    if (potential_ != nullptr) {
-      magnitude += step_forces_[i].norm();
-      errors[i] += std::numeric_limits<double>::epsilon() * potential_->weights[i] * state.positions[i].norm();
-    }
-    work += magnitude * state.positions[i].norm();  // of all forces, over a move as long as the node is far
-    scale += magnitude * magnitude;
-    piece_scales_[static_cast<std::size_t>(parts_.pieces.of_node[i])] += magnitude * magnitude;
-    error += errors[i] * errors[i];
-  }
-  state.energy_noise += 4 * std::numeric_limits<double>::epsilon() * work;
-  state.scale = std::sqrt(scale);
-  state.round_off = std::sqrt(error);
-}
-
-bool StaticSolver::balances(const StaticState& state, double tolerance) const {
-  std::vector<double> residuals(piece_scales_.size(), 0);
-  for (std::size_t i = 0; i < state.forces.size(); ++i)
-    residuals[static_cast<std::size_t>(parts_.pieces.of_node[i])] += state.forces[i].squaredNorm();
-  for (std::size_t p = 0; p < residuals.size(); ++p)
-    if (!(std::sqrt(residuals[p]) <= std::max(tolerance * std::sqrt(piece_scales_[p]), state.round_off))) return false;
-  return state.residual <= tolerance * state.scale;
 }
 
 void StaticSolver::assemble(const StaticState& state, Curvature curvature) {
@@ -229,7 +181,7 @@ void StaticSolver::adjust_terms_to_damping(const StaticState& state, Curvature c
 SolveReport StaticSolver::solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
                                        int max_iterations, std::span<Vec3> change) {
   const ScopedStage stage(parts_.times, "simulate/solve");
-  const double floor = (potential_ != nullptr ? kStepFloor : kStaticFloor) * state.round_off;
+  const double floor = (potential_ != nullptr ? kStepFloor : kStaticFloor) * least_round_off(state);
   const SolveReport report =
       parts_.multigrid.solve(parts_.matrix, right_side, change, tolerance, floor, max_iterations);
   linear_iterations_ += report.iterations;
@@ -366,7 +318,7 @@ SolveReport StaticSolver::solve(StaticState& state, std::span<const Vec3> target
   const auto finish = [&](SolveStatus status) {
     report.status = status;
     report.iterations = linear_iterations_;
-    report.residual = state.scale > 0 ? state.residual / state.scale : 0.0;
+    report.residual = imbalance(state);
     return report;
   };
   evaluate(state);
@@ -375,22 +327,22 @@ SolveReport StaticSolver::solve(StaticState& state, std::span<const Vec3> target
   double before = std::numeric_limits<double>::infinity();
   int stalls = 0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    if (state.residual <= tolerance * state.scale) return finish(SolveStatus::Converged);
+    if (balances(state, tolerance)) return finish(SolveStatus::Converged);
     stalls = state.residual < 0.5 * before ? 0 : stalls + 1;
-    if (state.residual <= state.round_off && (potential_ == nullptr || stalls > kStalls))
+    if (balances(state, tolerance, 1) && (potential_ == nullptr || stalls > kStalls))
       return finish(SolveStatus::RoundOff);
     before = state.residual;
     ++iterations_;
     // Looser far from the solution, so that the iteration converges superlinearly but no solve is finer than it helps.
-    const double relative = state.residual / state.scale;
+    const double relative = imbalance(state);
     const double linear =
         std::clamp(std::max(0.1 * relative, 0.3 * tolerance / relative), kBestLinearTolerance, kWorstLinearTolerance);
     const bool has_direction = find_direction(state, linear, direction);
     if (has_direction && is_negligible(direction, state.positions)) return finish(SolveStatus::RoundOff);
     if (!step_along(state, linear, has_direction, direction))
-      return finish(state.residual <= 100 * state.round_off ? SolveStatus::RoundOff : SolveStatus::Breakdown);
+      return finish(balances(state, tolerance, 100) ? SolveStatus::RoundOff : SolveStatus::Breakdown);
   }
-  return finish(state.residual <= tolerance * state.scale ? SolveStatus::Converged : SolveStatus::MaxIterations);
+  return finish(balances(state, tolerance) ? SolveStatus::Converged : SolveStatus::MaxIterations);
 }
 
 }  // namespace softreel

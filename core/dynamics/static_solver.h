@@ -10,6 +10,16 @@
 
 namespace softreel {
 
+/// P-wave modulus, Pa: the greatest stiffness of the law.
+double p_wave_modulus(const ElasticLaw& law);
+
+/// How the forces on one piece balance, N.
+struct PieceBalance {
+  double residual = 0;   ///< norm of the unbalanced forces
+  double scale = 0;      ///< norm over nodes of the summed magnitudes of the forces that balance there
+  double round_off = 0;  ///< residual that the rounding of positions alone explains
+};
+
 /// A state on the way to equilibrium, with all that the iteration compares.
 struct StaticState {
   std::vector<Vec3> positions;
@@ -18,9 +28,14 @@ struct StaticState {
   double energy = 0;         ///< elastic, gravity, pulls and the step's potential, J
   double energy_noise = 0;   ///< round-off of energy, that of positions included, J
   double residual = 0;       ///< norm of forces
-  double scale = 0;          ///< norm over nodes of the summed magnitudes of the forces that balance there
-  double round_off = 0;      ///< residual that the rounding of positions alone explains
+  /// Each piece of the mesh by itself: the whole weight of a light one is little beside what a heavy one carries.
+  std::vector<PieceBalance> pieces = {};
 };
+
+/// True if in each piece |forces| <= tolerance * scale; or at most `rounding` times what rounding explains.
+bool balances(const StaticState& state, double tolerance, double rounding = 0);
+/// The greatest residual of a piece over its scale.
+double imbalance(const StaticState& state);
 
 /// One search for equilibrium under fixed constraints.
 class StaticSolver {
@@ -31,15 +46,11 @@ class StaticSolver {
                const std::vector<ActivePull>& pulls, const StepPotential* potential = nullptr);
 
   /// Moves the held nodes of `start` to `targets` by one full step of the linearised body, then iterates until
-  /// |forces| <= tolerance * scale or round-off. The result is in `state`, converged or not.
+  /// the forces balance in each piece to the tolerance or round-off. The result is in `state`, converged or not.
   SolveReport solve(StaticState& state, std::span<const Vec3> targets, double tolerance, int max_iterations);
 
   /// Fills everything of a state but positions (rotations: guesses in, results out).
   void evaluate(StaticState& state);
-
-  /// Whether the forces of the state that was last evaluated balance in each piece by itself, to its own scale: the
-  /// whole weight of a light one is little beside what a heavy one carries.
-  bool balances(const StaticState& state, double tolerance) const;
 
   int iterations() const { return iterations_; }  ///< Newton iterations so far
 
@@ -62,18 +73,17 @@ class StaticSolver {
   bool move_held(StaticState& state, std::span<const Vec3> targets);
   bool improves(const StaticState& from, const StaticState& to, double step, double slope) const;
   double add_potential(StaticState& state);
-  void measure_scales(StaticState& state);
+  void measure_pieces(StaticState& state);
 
   Simulator::Parts& parts_;
   std::span<const std::uint8_t> held_;
   std::span<const std::uint8_t> held_pieces_;
   const std::vector<ActivePull>& pulls_;
   const StepPotential* potential_;
-  std::vector<double> shares_;        ///< per element: 1 and b / r of damping
-  std::vector<double> node_terms_;    ///< inertia; in statics, what holds the rigid motions of pieces without a pin
-  std::vector<double> piece_scales_;  ///< squares of StaticState::scale of each piece, of the state last evaluated
-  std::vector<Vec3> step_forces_;     ///< of the potential at the state that was last evaluated, N
-  bool unstable_ = false;             ///< the exact tangent gave no direction of descent at the present state
+  std::vector<double> shares_;      ///< per element: 1 and b / r of damping
+  std::vector<double> node_terms_;  ///< inertia; in statics, what holds the rigid motions of pieces without a pin
+  std::vector<Vec3> step_forces_;   ///< of the potential at the state that was last evaluated, N
+  bool unstable_ = false;           ///< the exact tangent gave no direction of descent at the present state
   int iterations_ = 0;
   int ahead_pause_ = 1, next_ahead_ = 0;  ///< iterations to leave out after a failure of search_ahead; its next try
   int linear_iterations_ = 0;

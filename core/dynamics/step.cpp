@@ -324,7 +324,7 @@ StepReport Simulator::Parts::step(double frame, double seconds, double error_lim
   join(work.bonds);
   work.pulls = pulls_at(frame, state.grabs, work.bonds);
   const bool ends_frame = frame == std::floor(frame);
-  if (is_at_rest(*this, work.pinned, work.pulls, seconds)) {
+  if (is_at_rest(*this, work.pinned, work.pulls)) {
     if (ends_frame) coarse_lag.usable = false;
     report.nonlinear_iterations = 0;
     report.at_rest = true;

@@ -53,8 +53,7 @@ SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work, StepRep
 /// unbalanced forces.
 StepReport iterate_step(Simulator::Parts& parts, StepWork& work);
 
-/// True if a step of `seconds` would change nothing worth a step: see SolverParams::rest_tolerance.
-bool is_at_rest(Simulator::Parts& parts, const PinnedNodes& pinned, const std::vector<ActivePull>& pulls,
-                double seconds);
+/// True if a step would change nothing worth a step: see SolverParams::rest_tolerance.
+bool is_at_rest(Simulator::Parts& parts, const PinnedNodes& pinned, const std::vector<ActivePull>& pulls);
 
 }  // namespace softreel

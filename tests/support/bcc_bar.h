@@ -84,6 +84,15 @@ inline TetMesh kuhn_bar(const std::array<int, 3>& cells, const Vec3& size) {
   return mesh;
 }
 
+/// One mesh of two, the second moved by `shift`; they share no node.
+inline TetMesh side_by_side(const TetMesh& first, const TetMesh& second, const Vec3& shift) {
+  TetMesh both = first;
+  const auto more = static_cast<Index>(first.nodes.size());
+  for (const Vec3& node : second.nodes) both.nodes.push_back(node + shift);
+  for (const Tet& tet : second.tets) both.tets.push_back({tet[0] + more, tet[1] + more, tet[2] + more, tet[3] + more});
+  return both;
+}
+
 /// Each node as a surface point: weight 1 on that node, in the first element that has it. Such a point's pin holds the
 /// whole element.
 inline Embedding embed_nodes(const TetMesh& mesh) {

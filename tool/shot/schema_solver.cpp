@@ -103,8 +103,8 @@ void add_time_stepping(Table<Shot>& t) {
       .add("max_substeps", of_solver(&P::max_substeps), whole<int>(1, kMostSubsteps), "per frame",
            "step_error, error: the most steps of a frame. If they do not do, the run stops and says so.")
       .add("rest_tolerance", of_solver(&P::rest_tolerance), number({0, 1}), "",
-           "dynamic: a body is not stepped if its velocities would move no point by more than this times its size, "
-           "its forces balance to force_tolerance and its pins stay; 0: every body is stepped.")
+           "dynamic: a body is not stepped if its velocities would move no point by more than this times its size in "
+           "1/24 s, its forces balance to force_tolerance and its pins stay; 0: every body is stepped.")
       .add("matrix_lag", of_solver(&P::matrix_lag), number({0, 1}), "",
            "dynamic: within a frame, elements whose matrix would change by less than this times tolerance keep it; 0: "
            "only where nothing changes.")

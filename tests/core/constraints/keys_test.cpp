@@ -65,5 +65,15 @@ TEST(IsActive, HoldsInAnyRangeEndsIncluded) {
   EXPECT_TRUE(is_active({{1, 5}, {8, 9}}, 8));
 }
 
+TEST(ActiveRange, HasNoHoleBetweenAFrameThatEndsOneAndTheNextThatBeginsOne) {
+  const std::vector<FrameRange> touching{{1, 10}, {11, 20}}, apart{{1, 10}, {12, 20}}, unsorted{{11, 20}, {1, 10}};
+  for (const double frame : {1.0, 10.0, 10.25, 10.999}) EXPECT_EQ(active_range(touching, frame), 0) << frame;
+  for (const double frame : {11.0, 11.5, 20.0}) EXPECT_EQ(active_range(touching, frame), 1) << frame;
+  for (const double frame : {0.999, 20.25}) EXPECT_EQ(active_range(touching, frame), -1) << frame;
+  for (const double frame : {10.25, 11.0, 11.9}) EXPECT_EQ(active_range(apart, frame), -1) << frame;
+  EXPECT_EQ(active_range(unsorted, 10.5), 1);
+  EXPECT_EQ(active_range({{1, 10.25}, {11.25, 20}}, 10.5), -1) << "meant as it is";
+}
+
 }  // namespace
 }  // namespace softreel

@@ -247,11 +247,7 @@ TEST(Rest, IsNotTheTurnOfASwingNorABodyThatFalls) {
 TEST(Rest, IsNotThatOfALightPieceThatFallsBesideAHeavyOne) {
   const TetMesh statue = testing::kuhn_bar({2, 2, 2}, Vec3::Ones()),
                 leaf = testing::kuhn_bar({2, 1, 1}, Vec3::Constant(0.1));
-  TetMesh both = statue;
-  const auto shift = static_cast<Index>(statue.nodes.size());
-  for (const Vec3& node : leaf.nodes) both.nodes.push_back(node + Vec3(3, 0, 0));
-  for (const Tet& tet : leaf.tets)
-    both.tets.push_back({tet[0] + shift, tet[1] + shift, tet[2] + shift, tet[3] + shift});
+  const TetMesh both = testing::side_by_side(statue, leaf, Vec3(3, 0, 0));
   BodyModel model = body_model(both, {1e6, 0.3, 1e4, 0, 0});
   for (std::size_t e = statue.tets.size(); e < both.tets.size(); ++e) model.materials[e].density = 1;
   model.pins = {testing::make_pin(testing::select_nodes(both, [](const Vec3& p) { return p.x() < 2; }))};
@@ -259,6 +255,43 @@ TEST(Rest, IsNotThatOfALightPieceThatFallsBesideAHeavyOne) {
   EXPECT_FALSE(bench.simulator.step(1, 1 / kFps).at_rest);
   for (std::size_t i = statue.nodes.size(); i < both.nodes.size(); ++i)
     EXPECT_NEAR(bench.simulator.state().positions[i].y() - both.nodes[i].y(), -9.81 / (kFps * kFps), 1e-6);
+}
+
+TEST(Rest, IsNotThatOfAFlakeThatIsLighterThanTheRoundingOfSteel) {
+  const TetMesh steel = testing::kuhn_bar({20, 4, 4}, Vec3(1, 0.2, 0.2)),
+                flake = testing::kuhn_bar({1, 1, 1}, Vec3::Constant(0.003));
+  const TetMesh both = testing::side_by_side(steel, flake, Vec3(3, 0, 0));
+  BodyModel model = body_model(both, {2e11, 0.3, 7800, 0, 0});
+  for (std::size_t e = steel.tets.size(); e < both.tets.size(); ++e) model.materials[e] = {1e5, 0.3, 100, 0, 0};
+  model.pins = {testing::make_pin(testing::select_nodes(both, [](const Vec3& p) { return p.x() < 2; }))};
+  Bench bench(model);
+  EXPECT_FALSE(bench.simulator.step(1, 1 / kFps).at_rest);
+  EXPECT_NEAR(bench.simulator.state().positions.back().y() - both.nodes.back().y(), -9.81 / (kFps * kFps), 1e-6);
+}
+
+TEST(Rest, OfAFreeBodyDoesNotDependOnRounding) {
+  BodyModel model = body_model(testing::kuhn_bar({3, 2, 1}, Vec3(0.7, 0.3, 0.1)), {4e4, 0.3, 1000, 0, 0});
+  model.gravity.setZero();
+  Bench bench(model);
+  EXPECT_TRUE(bench.simulator.step(1, 1 / kFps).at_rest);
+}
+
+TEST(Rest, IsNotASlowDriftHoweverShortTheSteps) {
+  BodyModel model = body_model(testing::kuhn_bar({2, 1, 1}, Vec3(0.5, 0.25, 0.25)), {4e4, 0.3, 1000, 0, 0});
+  model.gravity.setZero();
+  for (const int substeps : {1, 512}) {
+    SolverParams params;
+    params.substeps = substeps;
+    Bench bench(model, params);
+    SimulationState drifting = bench.simulator.state();
+    for (Vec3& velocity : drifting.velocities) velocity = Vec3(0, 0, 5e-5);
+    bench.simulator.set_state(drifting);
+    EXPECT_TRUE(advance_to_frame(
+                    bench.simulator, 1, kFps, [] {}, [](int) {})
+                    .ok());
+    for (std::size_t i = 0; i < model.mesh.nodes.size(); ++i)
+      EXPECT_NEAR(bench.simulator.state().positions[i].z() - model.mesh.nodes[i].z(), 5e-5 / kFps, 1e-9) << substeps;
+  }
 }
 
 TEST(Rest, ChangesNothingBeyondItsTolerance) {

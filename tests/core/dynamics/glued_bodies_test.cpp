@@ -261,6 +261,21 @@ TEST(GluedBodies, AFreeBodyHangsOnTheOneThatPinsHold) {
   EXPECT_FALSE(limited.simulator.find_equilibrium(1).ok()) << "so little cannot carry it";
 }
 
+TEST(GluedBodies, ASoftBodyOnAStiffOneTakesNoMoreIterations) {
+  const Vec3 size(0.4, 0.2, 0.2);
+  int before = 0;
+  for (const double stiffer : {1.0, 1e3, 1e6}) {
+    const BodyModel model =
+        glued(pinned_left(moved_model(kuhn_bar({4, 2, 2}, size), soft(stiffer * 1e5), Vec3::Zero(), "left")),
+              moved_model(kuhn_bar({4, 2, 2}, size), soft(), Vec3(0.4, 0, 0), "right"), 1e-3);
+    Bench bench(model);
+    const StepReport report = bench.simulator.find_equilibrium(1);
+    EXPECT_TRUE(report.ok()) << stiffer;
+    EXPECT_TRUE(before == 0 || report.nonlinear_iterations <= 2 * before) << stiffer << " " << before;
+    before = report.nonlinear_iterations;
+  }
+}
+
 TEST(GluedBodies, GlueLetsGoAtOnceOfWhatIsTooHeavy) {
   BodyModel model = halves(2, 2);
   model.glues[0].max_force = 30;  // N

@@ -12,15 +12,7 @@ namespace {
 
 using testing::Bench;
 using testing::body_model;
-
-/// The mesh and, beside it, a copy that touches it nowhere.
-TetMesh twice(const TetMesh& mesh) {
-  TetMesh both = mesh;
-  const auto n = static_cast<Index>(mesh.nodes.size());
-  for (const Vec3& node : mesh.nodes) both.nodes.push_back(node + Vec3(0, 0, 1));
-  for (const Tet& tet : mesh.tets) both.tets.push_back({tet[0] + n, tet[1] + n, tet[2] + n, tet[3] + n});
-  return both;
-}
+using testing::greatest_distance;
 
 /// Stretched, sheared and turning.
 void set_in_motion(Simulator& simulator) {
@@ -47,7 +39,8 @@ std::vector<Vec3> positions_after(const TetMesh& mesh, const std::vector<Element
 }
 
 TEST(HeterogeneousBody, MovesEachPieceAsIfItWereAlone) {
-  const TetMesh mesh = testing::kuhn_bar({4, 2, 2}, Vec3(0.4, 0.2, 0.2)), both = twice(mesh);
+  const TetMesh mesh = testing::kuhn_bar({4, 2, 2}, Vec3(0.4, 0.2, 0.2)),
+                both = testing::side_by_side(mesh, mesh, Vec3(0, 0, 1));
   const ElementMaterial plain{1e4, 0.3, 1000, 0.5, 0.005};
   std::vector<ElementMaterial> others(5, plain);
   others[0].youngs_modulus = 3e4;
@@ -74,6 +67,75 @@ TEST(HeterogeneousBody, MovesEachPieceAsIfItWereAlone) {
       EXPECT_GT(difference, 2e-4) << "the two materials move differently";
       EXPECT_LT(error, std::max(3 * tolerance, 1e-10));
     }
+}
+
+/// A bar of steel that two pins press together by a hundredth, and one of jelly beside it.
+struct PressedSteelAndJelly {
+  TetMesh steel = testing::kuhn_bar({8, 2, 2}, Vec3(0.8, 0.2, 0.2));
+  TetMesh jelly = testing::kuhn_bar({8, 2, 2}, Vec3(0.4, 0.1, 0.1));
+  BodyModel alone = body_model(jelly, {1e4, 0.3, 1000, 0, 0});
+  BodyModel both = body_model(testing::side_by_side(steel, jelly, Vec3(3, 0, 0)), {1e11, 0.3, 7800, 0, 0});
+
+  PressedSteelAndJelly() {
+    for (std::size_t e = steel.tets.size(); e < both.materials.size(); ++e) both.materials[e] = alone.materials[0];
+    Transform press;
+    press.translate = Vec3(-0.008, 0, 0);
+    both.pins = {testing::make_pin(select([](const Vec3& p) { return p.x() < 0.01; })),
+                 testing::make_pin(select([](const Vec3& p) { return p.x() > 0.79 && p.x() < 2; }), press)};
+  }
+  template <typename Predicate>
+  std::vector<Index> select(const Predicate& takes) const {
+    return testing::select_nodes(both.mesh, takes);
+  }
+  /// How far the jelly is from where it is by itself.
+  double difference(const SimulationState& together, const SimulationState& by_itself) const {
+    double greatest = 0;
+    for (std::size_t i = 0; i < jelly.nodes.size(); ++i)
+      greatest = std::max(greatest,
+                          (together.positions[steel.nodes.size() + i] - Vec3(3, 0, 0) - by_itself.positions[i]).norm());
+    return greatest;
+  }
+};
+
+TEST(HeterogeneousBody, AForceThatIsNothingToTheSteelBendsTheJellyInStatics) {
+  PressedSteelAndJelly bodies;
+  bodies.both.gravity.setZero();
+  bodies.alone.gravity.setZero();
+  Transform up;
+  up.translate = Vec3(0, 0.02, 0);
+  bodies.alone.pins = {
+      testing::make_pin(testing::select_nodes(bodies.jelly, [](const Vec3& p) { return p.x() < 0.01; }))};
+  bodies.alone.pulls = {
+      testing::make_pull(testing::select_nodes(bodies.jelly, [](const Vec3& p) { return p.x() > 0.39; }), up, 1.0)};
+  bodies.both.pins.push_back(testing::make_pin(bodies.select([](const Vec3& p) { return p.x() > 2 && p.x() < 3.01; })));
+  bodies.both.pulls = {testing::make_pull(bodies.select([](const Vec3& p) { return p.x() > 3.39; }), up, 1.0)};
+  for (BodyModel* model : {&bodies.alone, &bodies.both}) model->pulls[0].active = {{2, 9}};
+  Bench together(bodies.both), by_itself(bodies.alone);
+  for (const int frame : {1, 2}) {
+    ASSERT_TRUE(together.simulator.find_equilibrium(frame).ok());
+    ASSERT_TRUE(by_itself.simulator.find_equilibrium(frame).ok());
+  }
+  const double bend = greatest_distance(by_itself.simulator.state().positions, bodies.jelly.nodes);
+  EXPECT_GT(bend, 1e-3);
+  EXPECT_LT(bodies.difference(together.simulator.state(), by_itself.simulator.state()), 1e-4 * bend);
+}
+
+TEST(HeterogeneousBody, JellyFallsBesideSteelUnderAMillionTimesItsWeightWithIteratedSteps) {
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Newmark}) {
+    PressedSteelAndJelly bodies;
+    SolverParams params;
+    params.integrator = integrator;
+    params.linearize = Linearize::Iterated;
+    Bench together(bodies.both, params), by_itself(bodies.alone, params);
+    for (int frame = 1; frame <= 6; ++frame) {
+      ASSERT_TRUE(together.simulator.step(frame, 1.0 / 24).ok());
+      ASSERT_TRUE(by_itself.simulator.step(frame, 1.0 / 24).ok());
+    }
+    const double fall = greatest_distance(by_itself.simulator.state().positions, bodies.jelly.nodes);
+    EXPECT_GT(fall, 0.2);
+    EXPECT_LT(bodies.difference(together.simulator.state(), by_itself.simulator.state()), 1e-5 * fall)
+        << static_cast<int>(integrator);
+  }
 }
 
 TEST(HeterogeneousBody, StepsWithContrastsScatteredOverItsElements) {
