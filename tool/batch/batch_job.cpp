@@ -1,7 +1,6 @@
 #include "tool/batch/batch_job.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "tool/batch/sweep.h"
+#include "tool/farm/shell_text.h"
 #include "tool/shot/shot_load.h"
 
 namespace softreel {
@@ -114,11 +114,6 @@ void require_swept_once(const std::vector<SweepAxis>& axes, const std::vector<Ov
                         axis.path));
 }
 
-bool is_plain(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-         std::string_view("_@%+=:,./-").find(c) != std::string_view::npos;
-}
-
 }  // namespace
 
 std::string BatchJob::label() const {
@@ -126,7 +121,7 @@ std::string BatchJob::label() const {
 }
 
 std::string BatchJob::command_line() const {
-  return "softreel " + shell_text(arguments);
+  return "softreel " + shell_command(arguments);
 }
 
 std::string BatchJob::report_path() const {
@@ -163,21 +158,6 @@ std::vector<BatchJob> make_jobs(const BatchRequest& request) {
   }
   require_own_files(jobs);
   return jobs;
-}
-
-std::string shell_text(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    text += text.empty() ? "" : " ";
-    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) {
-      text += word;
-      continue;
-    }
-    text += '\'';
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    text += '\'';
-  }
-  return text;
 }
 
 }  // namespace softreel

@@ -39,7 +39,4 @@ struct BatchJob {
 /// jobs that would write the same files.
 std::vector<BatchJob> make_jobs(const BatchRequest& request);
 
-/// The words for a shell, quoted where it needs that.
-std::string shell_text(const std::vector<std::string>& words);
-
 }  // namespace softreel

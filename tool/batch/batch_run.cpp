@@ -260,9 +260,8 @@ BatchResult plan_batch(std::vector<BatchJob> jobs, const BatchLimits& limits, co
   batch.results.resize(batch.jobs.size());
   batch.threads = limits.threads > 0 ? limits.threads : usable_processors();
   const double available = available_memory();
-  batch.bytes = limits.bytes > 0 ? limits.bytes
-                : available > 0  ? kShareOfMemory * available
-                                 : std::numeric_limits<double>::max();
+  batch.bytes =
+      limits.bytes > 0 ? limits.bytes : std::min(kShareOfMemory * available, std::numeric_limits<double>::max());
   for (std::size_t job = 0; job < batch.jobs.size(); ++job) {
     if (batch.jobs[job].problem.empty()) continue;
     batch.results[job].state = JobState::Failed;

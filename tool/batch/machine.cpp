@@ -21,25 +21,34 @@ std::optional<double> number_in(const fs::path& path) {
   return value;
 }
 
-/// What the limits of the process's group and those above it leave; infinite without limits.
-double left_by_control_groups() {
+/// Of a group's memory, what its files take: it goes as soon as something else needs it.
+double file_cache_of(const fs::path& group) {
+  std::ifstream in(group / "memory.stat");
+  std::string word;
+  double bytes = 0, value = 0;
+  while (in >> word >> value)
+    if (word == "inactive_file" || word == "active_file") bytes += value;
+  return bytes;
+}
+
+}  // namespace
+
+double left_by_control_groups(const std::string& membership, const std::string& root) {
   double left = std::numeric_limits<double>::infinity();
-  std::ifstream in("/proc/self/cgroup");
+  std::ifstream in(membership);
   std::string line;
   while (std::getline(in, line)) {
     if (!line.starts_with("0::")) continue;
-    fs::path group = fs::path("/sys/fs/cgroup") / fs::path(line.substr(3)).relative_path();
+    fs::path group = fs::path(root) / fs::path(line.substr(3)).relative_path();
     while (true) {
       const auto limit = number_in(group / "memory.max"), used = number_in(group / "memory.current");
-      if (limit && used) left = std::min(left, std::max(0.0, *limit - *used));
-      if (group == "/sys/fs/cgroup" || !group.has_relative_path()) break;
+      if (limit && used) left = std::min(left, std::max(0.0, *limit - std::max(0.0, *used - file_cache_of(group))));
+      if (group == root || !group.has_relative_path()) break;
       group = group.parent_path();
     }
   }
   return left;
 }
-
-}  // namespace
 
 int usable_processors() {
   cpu_set_t set;
@@ -51,10 +60,10 @@ int usable_processors() {
 double available_memory() {
   std::ifstream in("/proc/meminfo");
   std::string word;
-  double kilobytes = 0;
+  double kilobytes = std::numeric_limits<double>::infinity();
   while (in >> word)
     if (word == "MemAvailable:" && in >> kilobytes) break;
-  return std::min(kilobytes * 1024, left_by_control_groups());
+  return std::min(kilobytes * 1024, left_by_control_groups("/proc/self/cgroup", "/sys/fs/cgroup"));
 }
 
 std::string program_path() {

@@ -115,10 +115,17 @@ std::vector<std::string> values_of(const Range& range, const std::string& text) 
 /// text might give the same.
 std::string folder_text(const std::string& text, bool& lost) {
   constexpr std::string_view kDropped = " []{}\"'", kPlain = "._+-=";
+  // Lists and the quotes round a word say nothing that another value could not; blanks and quotes within a word do.
+  const bool is_word = text.find_first_of("[{") == std::string::npos;
   std::string out;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     const auto byte = static_cast<unsigned char>(c);
-    if (kDropped.find(c) != std::string_view::npos) continue;
+    if (kDropped.find(c) != std::string_view::npos) {
+      const bool encloses = (i == 0 || i + 1 == text.size()) && (c == '"' || c == '\'');
+      lost = lost || (is_word && !encloses);
+      continue;
+    }
     const bool is_plain = std::isalnum(byte) != 0 || byte >= 0x80 || kPlain.find(c) != std::string_view::npos;
     out += is_plain ? c : '_';
     lost = lost || (!is_plain && c != ',');
@@ -137,7 +144,9 @@ std::string name_of(const std::vector<Override>& values) {
   }
   if (name.size() <= kLongestName && !lost) return name;
   // What the name does not say, a few digits of the values' hash tell apart.
-  return name.substr(0, kLongestName) + "~" + KeyHasher("variant").add(whole).key().substr(0, 6);
+  std::size_t end = std::min(name.size(), kLongestName);
+  while (end > 0 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;  // UTF-8
+  return name.substr(0, end) + "~" + KeyHasher("variant").add(whole).key().substr(0, 6);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "tool/batch/batch_run.h"
 #include "tool/batch/junit.h"
 #include "tool/commands/commands.h"
+#include "tool/farm/shell_text.h"
 #include "tool/stages/atomic_file.h"
 
 namespace softreel {
@@ -20,13 +22,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Making of pictures for the page of a batch that was interrupted; the page of such a batch may lack some.
+constexpr std::chrono::milliseconds kPicturesWhenInterrupted(500);
+
 /// The words that this program was started with.
 std::string own_command_line() {
   std::ifstream in("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> words;
   for (std::string word; std::getline(in, word, '\0');) words.push_back(word);
   if (!words.empty()) words.front() = "softreel";
-  return shell_text(words);
+  return shell_command(words);
 }
 
 /// Where the reports go if nobody said: where all the jobs' files or variants lie, or "out".
@@ -82,16 +87,19 @@ ReportPaths write_reports(const BatchResult& batch, const std::string& folder, s
   const ReportPaths paths{(place / "batch.json").string(), (place / "batch.junit.xml").string(),
                           (place / "batch.html").string()};
   const std::tm utc = fmt::gmtime(start);
+  write_file(paths.json, to_json(batch) + "\n");
+  write_file(paths.junit, to_junit(batch, fmt::format("{:%Y-%m-%dT%H:%M:%S}", utc), host_name()));
+  // After an interruption there is a second or two for all of this, and pictures take the longest by far.
+  const auto enough = std::chrono::steady_clock::now() + kPicturesWhenInterrupted;
   std::vector<JobPictures> pictures;
   for (std::size_t i = 0; i < batch.jobs.size(); ++i) {
     const JobResult& result = batch.results[i];
     const bool has_run = result.attempts > 0 || result.state == JobState::UpToDate;
-    pictures.push_back(has_run && result.status != static_cast<int>(ErrorKind::Input)
+    const bool has_time = !batch.interrupted || std::chrono::steady_clock::now() < enough;
+    pictures.push_back(has_run && has_time && result.status != static_cast<int>(ErrorKind::Input)
                            ? make_job_pictures(batch.jobs[i], result.plan)
                            : JobPictures());
   }
-  write_file(paths.json, to_json(batch) + "\n");
-  write_file(paths.junit, to_junit(batch, fmt::format("{:%Y-%m-%dT%H:%M:%S}", utc), host_name()));
   write_file(paths.page, batch_page(batch, pictures, fmt::format("{:%Y-%m-%d %H:%M} UTC", utc), host_name()));
   return paths;
 }

@@ -25,6 +25,9 @@ std::string overview() {
 }  // namespace
 
 int run_explain(const ExplainOptions& options) {
+  const bool is_topic = options.shot.empty() && find_topic(options.field) != nullptr;
+  if (options.json && (options.field.empty() || is_topic))
+    throw input_error("--json: tables and topics are for people.\n  Accepted with a field. Leave out --json.");
   if (options.field.empty()) {
     std::printf("%s", overview().c_str());
     return 0;
@@ -38,8 +41,13 @@ int run_explain(const ExplainOptions& options) {
         "--set, --quality: there is no shot that they could change.\n  Accepted: both beside --shot SHOT. Name the "
         "shot.");
   const FieldExplanation explanation = explain(options.field);
+  if (!options.shot.empty() && explanation.text.is_table)
+    throw input_error(
+        fmt::format("--shot: {} is a table, which has no value.\n  Accepted with one of its fields: softreel explain "
+                    "{} lists them.",
+                    options.field, options.field));
   std::vector<FieldValue> values;
-  if (!options.shot.empty() && !explanation.text.is_table) {
+  if (!options.shot.empty()) {
     std::vector<Override> overrides;
     for (const std::string& text : options.sets) overrides.push_back(parse_override(text));
     values = field_values_in(options.field, explanation.text, options.shot, overrides);
@@ -49,8 +57,7 @@ int run_explain(const ExplainOptions& options) {
     return 0;
   }
   std::printf("%s", to_text(explanation).c_str());
-  if (!options.shot.empty() && !explanation.text.is_table)
-    std::printf("%s", to_text(values, explanation.text, options.shot).c_str());
+  if (!options.shot.empty()) std::printf("%s", to_text(values, explanation.text, options.shot).c_str());
   return 0;
 }
 

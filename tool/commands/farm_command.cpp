@@ -11,6 +11,7 @@
 #include "tool/commands/farm_submission.h"
 #include "tool/commands/interruption.h"
 #include "tool/farm/openjd.h"
+#include "tool/farm/shell_text.h"
 #include "tool/farm/slurm.h"
 #include "tool/stages/shot_status.h"
 
@@ -49,9 +50,8 @@ const FarmRecord& require_record(const FarmedShot& shot) {
   if (shot.record() && !shot.record()->tasks.empty()) return *shot.record();
   throw input_error(
       fmt::format("{}: nothing of this shot was submitted with the output folder {}.\n  Accepted with --status and "
-                  "--retry: a shot that "
-                  "softreel farm submitted, with the same --output. softreel farm {} submits it.",
-                  shot.site().shot, shot.site().output, shot.site().shot));
+                  "--retry: a shot that softreel farm submitted, with the same --output. {} submits it.",
+                  shot.site().shot, shot.site().output, shell_command({"softreel", "farm", shot.site().shot})));
 }
 
 /// Slurm's queue if one of the shots was given to Slurm.
@@ -80,10 +80,9 @@ std::string closing_line(const FarmedShot& shot, const FarmSummary& summary) {
   if (summary.broken == 0)
     return fmt::format("{} of {} tasks to go", summary.running + summary.waiting,
                        summary.running + summary.waiting + summary.done);
-  return fmt::format(
-      "{} of {} tasks failed, are stuck or lost; softreel farm {} --output {} --retry submits what is missing",
-      summary.broken, summary.running + summary.waiting + summary.done + summary.broken, shot.site().shot,
-      shot.site().output);
+  return fmt::format("{} of {} tasks failed, are stuck or lost; {} submits what is missing", summary.broken,
+                     summary.running + summary.waiting + summary.done + summary.broken,
+                     shell_command({"softreel", "farm", shot.site().shot, "--output", shot.site().output, "--retry"}));
 }
 
 /// Prints how all shots fare. Exit status 1 if a task of one is broken.
@@ -157,7 +156,7 @@ bool submit(FarmedShot& shot, const FarmOptions& options, const std::optional<Qu
   const bool to_slurm = engine == "slurm";
   if (options.retry) require_record(shot);
   std::vector<TaskStatus> statuses;
-  if (queue && shot.record()) statuses = statuses_of(shot, queue);
+  if (queue && shot.record() && shot.record()->engine == "slurm") statuses = statuses_of(shot, queue);
   if (!options.retry && !options.shot.dry_run) require_idle(shot, statuses);
   const FarmPlan plan = plan_submission(shot, statuses, to_slurm ? kMostSlurmTasks : kMostOpenJdTasks);
   if (plan.jobs.empty()) {
@@ -269,13 +268,22 @@ int wait_for(const Shots& shots, const FarmOptions& options, Console& console) {
 }
 
 void require_sense(const FarmOptions& options) {
+  if (options.shot.dry_run && options.shot.json)
+    throw input_error(
+        "--json: says how submitted tasks fare, and a dry run submits none.\n  Accepted without --dry-run, which "
+        "prints "
+        "the commands and scripts.");
   if (options.wait && options.engine == "openjd")
     throw input_error(
         "--wait: whoever runs the template of --engine openjd is not known here.\n  Accepted with --engine slurm. "
         "softreel farm SHOT --status says what is there.");
-  if (!options.template_path.empty() && (options.engine != "openjd" || options.shots.size() > 1))
-    throw input_error(
-        "--template: names the file of one shot's template.\n  Accepted with --engine openjd and one shot.");
+}
+
+/// After the shots were read: a retry's engine is that of its record.
+void require_template_of_one_shot(const FarmOptions& options, const Shots& shots) {
+  if (options.template_path.empty() || (shots.size() == 1 && engine_of(options, *shots.front()) == "openjd")) return;
+  throw input_error(
+      "--template: names the file of one shot's template.\n  Accepted with --engine openjd and one shot.");
 }
 
 }  // namespace
@@ -286,6 +294,7 @@ int run_farm(const FarmOptions& options) {
   if (!options.settings.memory.empty()) parse_memory(options.settings.memory);
   if (!options.settings.time.empty()) parse_time(options.settings.time);
   const Shots shots = read_shots(options);
+  require_template_of_one_shot(options, shots);
   Console console(options.shot.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0);
   if (options.status) {
     for (const auto& shot : shots) require_record(*shot);

@@ -100,6 +100,10 @@ void add_farm_command(CLI::App& app, FarmOptions& options, std::function<int()>&
       ->group("Running");
   farm->add_flag("--quiet", options.shot.quiet, "print warnings and errors only")->group("Running");
   farm->add_flag("--json", options.shot.json, "print how the tasks fare as JSON on standard output")->group("Running");
+  // They are asked of the record, so an option that would change it says nothing.
+  for (const char* name : {"--chunk", "--cpus", "--memory", "--time", "--name", "--program", "--engine", "--template",
+                           "--partition", "--account", "--constraint", "--sbatch"})
+    status->excludes(farm->get_option(name));
   farm->callback([&options, &run] { run = [&options] { return run_farm(options); }; });
 }
 

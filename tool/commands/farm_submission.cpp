@@ -1,6 +1,7 @@
 #include "tool/commands/farm_submission.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -97,6 +98,41 @@ void cancel(const std::vector<std::string>& jobs) {
   run_slurm(command);
 }
 
+/// Those that have left the queue meanwhile need no cancelling, and make scancel fail.
+void cancel_what_is_there(const std::vector<SubmittedTask>& tasks, unsigned user) {
+  std::vector<std::string> jobs;
+  for (const SubmittedTask& task : tasks) jobs.push_back(task.job);
+  try {
+    cancel(jobs);
+  } catch (const Error&) {
+    const Queue queue = ask_slurm({user});
+    const auto is_there = [&](const std::string& job) {
+      const auto entry = queue.find(job);
+      return entry != queue.end() && is_live(entry->second);
+    };
+    if (std::any_of(jobs.begin(), jobs.end(), is_there)) throw;
+  }
+}
+
+/// What is left of a submission when the next one was refused after it had cancelled some of its tasks.
+FarmRecord without(FarmRecord record, const std::vector<SubmittedTask>& cancelled) {
+  std::erase_if(record.tasks, [&](const SubmittedTask& task) {
+    return std::any_of(cancelled.begin(), cancelled.end(),
+                       [&](const SubmittedTask& one) { return one.job == task.job; });
+  });
+  return record;
+}
+
+/// Takes back what Slurm took of a submission that it refused; returns what to say if it does not let go.
+std::string take_back(const std::vector<std::string>& numbers) {
+  try {
+    cancel(numbers);
+    return {};
+  } catch (const Error& error) {
+    return fmt::format("\n  Still in the queue: {}. {}", fmt::join(numbers, ", "), error.what());
+  }
+}
+
 FarmRecord new_record(const FarmedShot& shot, const FarmPlan& plan, const std::string& engine) {
   return {engine, ::getuid(), shot.site(), shot.frames(), shot.settings(), plan.kept};
 }
@@ -148,9 +184,9 @@ FarmPlan plan_submission(FarmedShot& shot, const std::vector<TaskStatus>& status
 
 void submit_to_slurm(FarmedShot& shot, const FarmPlan& plan) {
   shot.make_folders();
-  std::vector<std::string> replaced, numbers;
-  for (const SubmittedTask& task : plan.replaced) replaced.push_back(task.job);
-  cancel(replaced);
+  std::vector<std::string> numbers;
+  const std::optional<FarmRecord> before = shot.record();
+  if (before) cancel_what_is_there(plan.replaced, before->user);
   shot.forget(all_tasks(plan));
   FarmRecord record = new_record(shot, plan, "slurm");
   try {
@@ -163,10 +199,10 @@ void submit_to_slurm(FarmedShot& shot, const FarmPlan& plan) {
       for (SubmittedTask& task : tasks_of(job, numbers.back())) record.tasks.push_back(std::move(task));
       shot.save(record);
     }
-  } catch (...) {
-    cancel(numbers);
-    shot.save(new_record(shot, plan, "slurm"));
-    throw;
+  } catch (const Error& refused) {
+    const std::string left = take_back(numbers);
+    shot.save(before ? without(*before, plan.replaced) : new_record(shot, plan, "slurm"));
+    throw Error(refused.kind(), refused.what() + left);
   }
 }
 

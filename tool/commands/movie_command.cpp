@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "tool/commands/commands.h"
+#include "tool/farm/shell_text.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/picture_stage.h"
 #include "tool/stages/scene_stage.h"
@@ -20,8 +21,9 @@ void require_pictures(const Session& session, const PictureStage& pictures) {
   if (missing.empty()) return;
   throw work_error(
       fmt::format("{}: pictures of the shot as it is now are missing: frames {}. Nothing was made of the others.\n"
-                  "  softreel render {} makes them.",
-                  session.shot().output.directory, frame_ranges(missing), session.shot().path));
+                  "  {} makes them.",
+                  session.shot().output.directory, frame_ranges(missing),
+                  shell_command({"softreel", "render", session.shot().path})));
 }
 
 /// What the shot asks for; throws if that is nothing.

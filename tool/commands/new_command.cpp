@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "tool/commands/commands.h"
+#include "tool/farm/shell_text.h"
 #include "tool/stages/atomic_file.h"
 #include "tool/starter/starter_shot.h"
 
@@ -30,10 +31,6 @@ void require_free(const std::string& path, bool force) {
       fmt::format("-o {}: this file is there already, and is not touched.\n  Accepted: a name that is "
                   "free. Name another with -o, or say --force to write over it.",
                   path));
-}
-
-std::string in_words(const std::string& path) {
-  return path.find_first_of(" '\"$&;()*?") == std::string::npos ? path : "'" + path + "'";
 }
 
 }  // namespace
@@ -69,9 +66,9 @@ int run_new(const NewOptions& options) {
   if (options.quiet) return 0;
   std::printf("%s: written\n", path.c_str());
   for (const std::string& fact : shot.facts) std::printf("  %s\n", fact.c_str());
-  const std::string name = in_words(path);
-  std::printf("Next: softreel check %s\n      softreel preview %s --mode fast\n      softreel render %s\n",
-              name.c_str(), name.c_str(), name.c_str());
+  std::printf("Next: %s\n      %s\n      %s\n", shell_command({"softreel", "check", path}).c_str(),
+              shell_command({"softreel", "preview", path, "--mode", "fast"}).c_str(),
+              shell_command({"softreel", "render", path}).c_str());
   return 0;
 }
 

@@ -20,6 +20,7 @@ record() {
 
 fail() {
   printf 'softreel farm: %s of %s: node %s %s\n' "$task" "$name" "$node" "$1" >&2
+  [ -z "$keeps_log" ] || printf 'softreel: %s\n' "node $node $1" 2>/dev/null >>"$records/logs/$log"
   record failed 2 2>/dev/null
   exit 2
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "tool/farm/shell_text.h"
 #include "tool/shot/preset_library.h"
 #include "tool/shot/schema.h"
 #include "tool/shot/shot_layers.h"
@@ -332,7 +333,7 @@ class StarterText {
                                 "preview {} --mode fast          # the motion, in seconds",
                                 "render {}                       # the pictures and their movie",
                                 "explain body.*.pin[].select --shot {}   # any field"})
-      text += "#   softreel " + fmt::format(fmt::runtime(command), file) + "\n";
+      text += "#   softreel " + fmt::format(fmt::runtime(command), shell_command({file})) + "\n";
     return text + "# Lengths are in metres, y is up, colours are linear RGB.\n\n";
   }
 

@@ -83,6 +83,16 @@ TEST(Sweep, NamesAreFoldersThatAShellTakesAndDependOnTheirOwnValuesOnly) {
   for (const std::string& name : paths)
     EXPECT_EQ(name.find_first_of("/ $()'\"*?[]{}\\;&|<>`"), std::string::npos) << name;
   EXPECT_EQ(names("body.mesh=b/y.ply,a/x.ply")[1], paths[0]);
+  const Strings blanks = names("body.mesh=\"my cat.obj\",\"mycat.obj\",\"my'cat.obj\"");
+  EXPECT_EQ(std::set<std::string>(blanks.begin(), blanks.end()).size(), 3U);
+  EXPECT_EQ(names("gravity.acceleration=[0, -1, 0],[0,-2,0]")[0], "gravity.acceleration=0_-1_0");
+  std::string umlauts;
+  for (int k = 0; k < 100; ++k) umlauts += "\xc3\xa4";
+  for (const char* before : {"", "x"}) {
+    const std::string name = names("body.mesh=" + (before + umlauts))[0];
+    const std::string kept = name.substr(0, name.rfind('~'));
+    EXPECT_EQ(static_cast<unsigned char>(kept.back()), 0xa4) << "no half of a character";
+  }
   EXPECT_LT(names("body.mesh=" + std::string(3000, 'm'))[0].size(), 200U);
   EXPECT_NE(names("body.mesh=" + std::string(3000, 'm')), names("body.mesh=" + std::string(3001, 'm')));
 }

@@ -54,7 +54,8 @@ TEST(Explain, KnowsTopicsAndRefusesWhatItDoesNotKnow) {
   EXPECT_EQ(unknown.status, 2);
   EXPECT_NE(unknown.err.find("render.samples"), std::string::npos) << unknown.err;
   EXPECT_EQ(run("softreel explain tets --set body.tets=3").status, 2);
-  EXPECT_EQ(run("softreel explain tets --shot none.toml").status, 2);
+  for (const char* words : {"tets --shot none.toml", "body --shot none.toml", "exit-status --json", "--json"})
+    EXPECT_EQ(run(fmt::format("softreel explain {}", words)).status, 2) << words;
 }
 
 TEST(Version, NamesLibrariesPartsAndTheMachine) {

@@ -196,6 +196,64 @@ TEST_F(Farm, AFailingTaskIsNamedWithItsLogAndARetryMakesOnlyWhatIsMissing) {
   expect_result_of_render();
 }
 
+TEST_F(Farm, ARefusedRetryLeavesTheRecordAsItWas) {
+  start("refused_retry");
+  write_text(slurm_ + "/hold", "");
+  ASSERT_EQ(farm("--chunk 2 --set render.samples=3").status, 0);
+  write_text(slurm_ + "/refuse", "frames.sh");
+  const Outcome refused = farm("--retry --partition nigth");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("no such partition"), std::string::npos) << refused.err;
+  fs::remove(slurm_ + "/refuse");
+  fs::remove(slurm_ + "/submitted");
+  EXPECT_EQ(tasks(1).size(), 4U) << "they are lost, and known";
+  const Outcome again = farm("--retry");
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(submitted().find("nigth"), std::string::npos) << submitted();
+  EXPECT_NE(read_text(folder_ + "/out/.farm/ball/scripts/frames.sh").find("render.samples=3"), std::string::npos);
+}
+
+TEST_F(Farm, SaysWhyAJobWasRefusedEvenIfNoneCanBeTakenBack) {
+  start("stubborn");
+  write_text(slurm_ + "/hold", "");
+  write_text(slurm_ + "/refuse", "frames.sh");
+  program("scancel", "#!/bin/bash\necho 'no contact to the controller' >&2\nexit 1\n");
+  const Outcome outcome = farm();
+  EXPECT_EQ(outcome.status, 1);
+  for (const char* part : {"no such partition", "Still in the queue: 1", "no contact"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << part << " in " << outcome.err;
+}
+
+TEST_F(Farm, ATemplateOfOneShotIsNoQueueForAnother) {
+  start("engines");
+  std::string shot = read_text(folder_ + "/shot.toml");
+  shot.replace(shot.find("name = \"ball\""), 13, "name = \"egg\"");
+  write_text(folder_ + "/egg.toml", shot);
+  const auto with_slurm = [&](const std::string& words) {
+    return run(fmt::format("export PATH={1}:$PATH; softreel farm {2} --output {0}/out", folder_, slurm_, words));
+  };
+  ASSERT_EQ(with_slurm(folder_ + "/egg.toml --engine openjd").status, 0);
+  ASSERT_EQ(farm().status, 0);
+  const Outcome both = with_slurm(fmt::format("{0}/shot.toml {0}/egg.toml --engine slurm", folder_));
+  EXPECT_EQ(both.status, 0) << both.err;
+  EXPECT_TRUE(exists(folder_ + "/out/egg.mp4"));
+}
+
+TEST_F(Farm, ClosingLinesAndOptionsSurviveAShell) {
+  start("a blank");
+  write_text(slurm_ + "/hold", "");
+  const std::string where =
+      fmt::format("export PATH='{1}':$PATH; softreel farm '{0}/shot.toml' --output '{0}/out' ", folder_, slurm_);
+  ASSERT_EQ(run(where).status, 0);
+  const Outcome status = run(where + "--status");
+  EXPECT_EQ(status.status, 1);
+  EXPECT_NE(status.out.find(fmt::format("softreel farm '{0}/shot.toml' --output '{0}/out' --retry", folder_)),
+            std::string::npos)
+      << status.out;
+  EXPECT_EQ(run(where + "--status --chunk 3").status, 2);
+  EXPECT_EQ(run(where + "--dry-run --json").status, 2);
+}
+
 TEST_F(Farm, WhatIsInTheQueueIsNotSubmittedTwice) {
   start("twice");
   write_text(slurm_ + "/hold", "");

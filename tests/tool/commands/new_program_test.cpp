@@ -19,6 +19,15 @@ constexpr const char* kQuick =
     "--frames 1-2 --quiet --set render.width=48 --set render.height=27 --set render.samples=1 --set "
     "render.max_bounces=1";
 
+TEST(NewShotCommands, SurviveAShell) {
+  const std::string folder = new_folder("new words");
+  const Outcome made =
+      run(fmt::format("softreel new {}/assets/pudding.ply -o \"{}/it's.toml\"", SOFTREEL_SOURCE_DIR, folder));
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find(fmt::format("softreel check '{}/it'\\''s.toml'", folder)), std::string::npos) << made.out;
+  EXPECT_NE(read_text(folder + "/it's.toml").find("softreel check 'it'\\''s.toml'"), std::string::npos);
+}
+
 /// A mesh of the sources, or of Debian's assimp-testmodels.
 class NewShot : public ::testing::TestWithParam<const char*> {};
 

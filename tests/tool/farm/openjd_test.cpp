@@ -187,6 +187,17 @@ TEST(OpenJd, AFailingTaskKeepsItsStatusAndItsLog) {
   EXPECT_NE(text_of(log_folder(shot) + "/" + record.log).find("it burns"), std::string::npos);
 }
 
+TEST(OpenJd, ATaskThatCannotStartSaysWhyInItsLog) {
+  const FarmShot shot = stand_in_shot(farm_folder("starts_not"));
+  FarmShot other = shot;
+  other.checksum = std::string(64, '0');
+  const json root = template_of(other, some_jobs());
+  EXPECT_EQ(run_task(root, root["steps"][1], "1-2").status, 2);
+  const TaskRecord record = parse_task_record(text_of(record_path(shot, "frames-1-2")));
+  EXPECT_EQ(record.state, "failed");
+  EXPECT_NE(text_of(log_folder(shot) + "/" + record.log).find("another build"), std::string::npos);
+}
+
 TEST(OpenJd, RefusesPathsThatATemplateCannotCarry) {
   FarmShot shot = stand_in_shot(farm_folder("refused"));
   shot.output = "/srv/two\nlines";
