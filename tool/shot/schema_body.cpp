@@ -11,7 +11,6 @@
 namespace softreel {
 namespace {
 
-constexpr std::int64_t kDefaultTets = 20000;
 constexpr std::int64_t kMostTets = 500000000;
 /// From 0.5 on the material is incompressible, which has no finite stiffness; near it the numbers degrade.
 constexpr Range kPoissonRatio{0, 0.499, false};

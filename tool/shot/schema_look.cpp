@@ -10,11 +10,14 @@
 namespace softreel {
 namespace {
 
+/// A position or target alone says that the camera is placed.
 void check_camera(const Place& place, const TomlValue& value, CameraSettings& camera) {
+  if (value.find("mode") == nullptr && (value.find("position") != nullptr || value.find("target") != nullptr))
+    camera.mode = CameraMode::Place;
   if (camera.mode != CameraMode::Place) return;
   for (const auto* field : {"position", "target"})
     if (value.find(field) == nullptr)
-      throw value_error(place, value, fmt::format("mode = \"place\" needs a {}", field),
+      throw value_error(place, value, fmt::format("a placed camera needs a {}", field),
                         fmt::format("Add {} = [x, y, z] in m, or use mode = \"frame\".", field));
 }
 
@@ -49,9 +52,16 @@ void check_render(const Place& place, const TomlValue& value, RenderSettings& re
          "Make one of the two shorter.");
   params.window = window_of(render);
   if (params.window == PixelWindow{}) return;
-  if (params.window.width() < 1 || params.window.height() < 1)
+  RenderSettings cropped = render;
+  cropped.overscan = 0;
+  const PixelWindow crop = window_of(cropped);
+  if (crop != PixelWindow{} && (crop.width() < 1 || crop.height() < 1))
     fail("crop", "no pixel is left", "[left, top, right, bottom], left below right and top below bottom",
          "Give the larger numbers last.");
+  if (std::max(params.window.width(), params.window.height()) > kMaxSide)
+    fail("overscan",
+         fmt::format("the picture would have {} x {} pixels", params.window.width(), params.window.height()),
+         fmt::format("what gives at most {} pixels a side", kMaxSide).c_str(), "Make it less.");
 }
 
 }  // namespace
@@ -62,7 +72,8 @@ const Table<CameraSettings>& camera_table() {
     Table<C> t;
     t.sentence = "Where the picture is taken from.";
     t.add("mode", &C::mode, choice<CameraMode>({{"frame", CameraMode::Frame}, {"place", CameraMode::Place}}), "",
-          "\"frame\" shows all bodies as they rest; \"place\" takes position and target.")
+          "\"frame\" shows all bodies as they rest; \"place\" takes position and target.",
+          "\"place\" where position and target are given, else \"frame\"")
         .add("azimuth_deg", &C::azimuth_deg, number(kAnyNumber), "degrees",
              "frame: turns the camera about the vertical; 0 is the front.")
         .add("elevation_deg", &C::elevation_deg, number({-90, 90, false}), "degrees", "frame: lifts the camera.")

@@ -255,13 +255,19 @@ const std::vector<Alternatives>& alternatives() {
   return all;
 }
 
+const TomlValue* find_given(const TomlValue& table, const std::string& name) {
+  const TomlValue* found = table.find(name);
+  const bool* toggled = found == nullptr ? nullptr : std::get_if<bool>(&found->data);
+  return toggled != nullptr && !*toggled ? nullptr : found;
+}
+
 void check_alternatives(const Place& place, const TomlValue& value, const std::string& pattern) {
   for (const Alternatives& group : alternatives()) {
     if (group.table != pattern) continue;
     const TomlValue* given = nullptr;
     std::string first;
     for (const std::string& name : group.fields) {
-      const TomlValue* found = value.find(name);
+      const TomlValue* found = find_given(value, name);
       if (found != nullptr && given != nullptr) {
         const FieldText text{"", "", "", "", first + " or " + name + ", not both", "", false, false};
         throw value_error({place.path + "." + name, &text, place.problems}, *found,

@@ -40,6 +40,9 @@ struct Alternatives {
 };
 const std::vector<Alternatives>& alternatives();
 
+/// The field's value if it says something: a switch that is off is no alternative to anything. Null if there is none.
+const TomlValue* find_given(const TomlValue& table, const std::string& name);
+
 /// Throws the error for two alternatives of a table that are both given; `pattern` is the table's path in the schema.
 void check_alternatives(const Place& place, const TomlValue& value, const std::string& pattern);
 

@@ -150,6 +150,9 @@ struct GlueSettings {
   Origin origin;
 };
 
+/// Of a body where neither the shot nor the error dial says how many.
+inline constexpr std::int64_t kDefaultTets = 20000;
+
 struct BodySettings {
   std::string name;
   std::string mesh;  ///< resolved path

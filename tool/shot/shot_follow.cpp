@@ -24,7 +24,8 @@ const Table<FollowSettings>& follow_table() {
         .add("speed", &F::speed, number(kSpeed), "", "Seconds of the clip for each of the shot.")
         .add("reference", &F::reference, optional_of(number(kAnyNumber)), "frames",
              "Frame of the shot at which what is followed belongs to the body at rest.",
-             "the pose that the file shows without its clips; of a point cache, its first sample")
+             "by vertex: none, as points are where their vertices are; else the pose that the file shows without its "
+             "clips")
         .add("placement", &F::in_scene, choice<bool>({{"body", false}, {"scene", true}}), "",
              "How the file's numbers come into the scene: as those of the body's mesh (up, fit, scale, translate, "
              "rotate_deg), or as they are, in metres and Y up.")

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
 #include "tool/shot/codecs.h"
 #include "tool/shot/preset_library.h"
 #include "tool/shot/schema.h"
@@ -115,20 +116,23 @@ TomlValue load_quality(const std::string& name) {
   return load_file(quality_file(name), nullptr, chain);
 }
 
-/// A quality changes the shot's bodies and adds none: one more would be a body of which next to nothing is said.
-void check_bodies(const TomlValue& quality, const TomlValue& document) {
-  const TomlValue* changed = quality.find("body");
+/// A quality changes the shot's bodies and materials and adds none: of one more next to nothing would be said, and a
+/// misspelt one would change nothing.
+void check_names(const char* kind, const TomlValue& quality, const TomlValue& document, const char* built_in) {
+  const TomlValue* changed = quality.find(kind);
   if (changed == nullptr || changed->table() == nullptr) return;
   std::vector<std::string> names;
-  if (const TomlValue* bodies = document.find("body"); bodies != nullptr && bodies->table() != nullptr)
-    for (const TomlEntry& body : *bodies->table()) names.push_back(body.key);
+  if (const TomlValue* there = document.find(kind); there != nullptr && there->table() != nullptr)
+    for (const TomlEntry& one : *there->table()) names.push_back(one.key);
+  if (names.empty() && built_in != nullptr) names.emplace_back(built_in);
   for (const TomlEntry& entry : *changed->table())
     if (std::find(names.begin(), names.end(), entry.key) == names.end())
       throw input_error(
-          fmt::format("{}: body.{} is wrong because the shot that this quality is for has no such body.\n"
-                      "  Accepted: {}. Correct the name, or take the table out.",
-                      to_string(entry.value.origin), entry.key,
-                      names.empty() ? "no body's table" : fmt::format("{}", fmt::join(names, ", "))));
+          fmt::format("{0}: {1}.{2} is wrong because the shot that this quality is for has no such {1}.\n"
+                      "  Accepted: {3}. Correct the name, or take the table out.{4}",
+                      to_string(entry.value.origin), kind, entry.key,
+                      names.empty() ? fmt::format("no {}'s table", kind) : fmt::format("{}", fmt::join(names, ", ")),
+                      suggestion(entry.key, names)));
 }
 
 }  // namespace
@@ -136,7 +140,7 @@ void check_bodies(const TomlValue& quality, const TomlValue& document) {
 void merge_layer(TomlValue& base, TomlValue over, Writing tables, const std::string& pattern) {
   for (const Alternatives& group : alternatives()) {
     if (group.table != pattern) continue;
-    const auto given = [&over](const std::string& name) { return over.find(name) != nullptr; };
+    const auto given = [&over](const std::string& name) { return find_given(over, name) != nullptr; };
     if (std::any_of(group.fields.begin(), group.fields.end(), given))
       for (const std::string& name : group.fields) erase_key(base, name);
   }
@@ -162,7 +166,8 @@ TomlValue load_layers(const std::string& path, const std::vector<Override>& over
   for (const Override& one : overrides)
     if (one.path == kQuality) {
       TomlValue quality = load_quality(one.value);
-      check_bodies(quality, document);
+      check_names("body", quality, document, nullptr);
+      check_names("material", quality, document, "default");
       merge_layer(document, std::move(quality), Writing::OfLower);
     }
   for (const Override& one : overrides)

@@ -187,7 +187,9 @@ void apply_override(TomlValue& document, const Override& override_value) {
   std::string walked, pattern;
   for (const Step& step : steps) {
     const bool named = pattern == "body" || pattern == "material";
-    if (&step == &steps.back() && !step.is_index && at->table() != nullptr) erase_alternatives(*at, pattern, step.key);
+    const bool is_off = std::holds_alternative<bool>(value.data) && !std::get<bool>(value.data);
+    if (&step == &steps.back() && !step.is_index && at->table() != nullptr && !is_off)
+      erase_alternatives(*at, pattern, step.key);
     at = &follow(*at, step, override_value, walked);
     if (step.is_index) {
       walked += fmt::format("[{}]", step.index);

@@ -9,6 +9,7 @@
 #include "core/tetmesh/filling/tetrahedralize.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
 #include "core/tetmesh/triangle_tree.h"
+#include "tool/stages/at_field.h"
 #include "tool/stages/bytes.h"
 #include "tool/stages/stage_names.h"
 
@@ -174,10 +175,10 @@ void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, c
   add(key, find_material(shot, body.material).physics);
   for (std::size_t i = 0; i < body.regions.size(); ++i) {
     const RegionSettings& region = body.regions[i];
-    select_or_fail(region.select, loaded, region.origin, region_field(body, i));
     for (const SelectionTerm& term : region.select.terms) {
       add(key, term);
-      key.add(select_points({{term}}, loaded.surface, loaded.weight_maps));
+      key.add(at_field(region.origin, region_field(body, i) + ".select",
+                       [&] { return select_points({{term}}, loaded.surface, loaded.weight_maps); }));
     }
     key.add(region.material.has_value()).add(region.stiffness.value_or(0.0));
     if (region.material) add(key, find_material(shot, *region.material).physics);
@@ -198,6 +199,22 @@ std::vector<ElementMaterial> element_materials(const Shot& shot, const BodySetti
     }
   }
   return materials;
+}
+
+void require_regions(const BodySettings& body, const LoadedBody& loaded, const TetMesh& mesh) {
+  const std::vector<Vec3> centroids = element_centroids(mesh);
+  for (std::size_t i = 0; i < body.regions.size(); ++i) {
+    const RegionSettings& region = body.regions[i];
+    const std::vector<bool> inside = contains(region.select, loaded.surface, centroids, loaded.weight_maps);
+    if (std::find(inside.begin(), inside.end(), true) != inside.end()) continue;
+    const Bounds box = used_bounds(loaded.surface);
+    throw input_error(fmt::format(
+        "{}: {}.select takes no tetrahedron.\n  The body reaches from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, "
+        "{:.4g}) m. Accepted: a selection that takes the centre of at least one; enlarge it, use unit = \"box\", or "
+        "take more tetrahedra.",
+        to_string(region.origin), region_field(body, i), box.min.x(), box.min.y(), box.min.z(), box.max.x(),
+        box.max.y(), box.max.z()));
+  }
 }
 
 BodyModel make_body_model(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,

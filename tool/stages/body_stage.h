@@ -32,13 +32,16 @@ FilledBody fill_body(const BodySettings& body, const LoadedBody& loaded, const S
 /// The same without the cache: for meshes that nobody asks for again.
 FilledBody fill_body_anew(const BodySettings& body, const LoadedBody& loaded, const RunContext& context);
 
-/// Adds what shapes the materials of a body's elements: its own, and its regions. Throws input_error as
-/// resolve_constraints, for regions.
+/// Adds what shapes the materials of a body's elements: its own, and its regions. Throws input_error for a region that
+/// names a group or weights which the body does not have.
 void add_materials(KeyHasher& key, const Shot& shot, const BodySettings& body, const LoadedBody& loaded);
 
 /// Materials per element: the body's own, and those of its regions.
 std::vector<ElementMaterial> element_materials(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,
                                                const TetMesh& mesh);
+
+/// Throws input_error for a region of the body that takes no element of the mesh.
+void require_regions(const BodySettings& body, const LoadedBody& loaded, const TetMesh& mesh);
 
 /// What the simulator takes: materials per element, pins and pulls on points.
 BodyModel make_body_model(const Shot& shot, const BodySettings& body, const LoadedBody& loaded,

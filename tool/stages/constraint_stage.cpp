@@ -22,6 +22,17 @@ Track<Transform> keys_in_meters(Track<Transform> track, bool in_box, bool pivot_
   return track;
 }
 
+/// Shares of a height that the body does not have would be nothing at all.
+void require_height(const Track<Transform>& keys, const Bounds& box, const Origin& origin, const std::string& field) {
+  const bool moves =
+      std::any_of(keys.keys.begin(), keys.keys.end(), [](const auto& key) { return !key.value.translate.isZero(0); });
+  if (!moves || box.size().y() > 1e-9 * box.diagonal()) return;
+  throw input_error(fmt::format(
+      "{}: {}.keys translates by heights of the body (keys_unit = \"box\"), but it has none: it lies flat.\n"
+      "  Accepted: metres. Take keys_unit = \"m\".",
+      to_string(origin), field));
+}
+
 Vec3 centroid_of(const std::vector<Index>& points, const SurfaceMesh& surface) {
   Vec3 sum = Vec3::Zero();
   for (const Index p : points) sum += surface.positions[static_cast<std::size_t>(p)];
@@ -64,6 +75,7 @@ void add_motion(const Shot& shot, const Settings& settings, const LoadedBody& lo
         fmt::format("{}: {}.grab = true needs the frame before, but shot.independent starts each from rest.\n  "
                     "Accepted: grab in a shot whose frames follow each other. Set shot.independent = false.",
                     to_string(settings.origin), field));
+  if (settings.keys_in_box) require_height(settings.keys, used_bounds(loaded.surface), settings.origin, field);
   constraint.track = keys_in_meters(settings.keys, settings.keys_in_box, settings.pivot_given,
                                     used_bounds(loaded.surface), centroid_of(constraint.points, loaded.surface));
   if (!settings.follow) return;

@@ -21,9 +21,6 @@ constexpr int kLooksPerFrame = 16;
 /// Where forces must balance; Newton's next iteration would mostly be far below it.
 constexpr double kLoosestForceTolerance = 1e-4;
 
-/// What the shot says where neither it nor the dial does.
-constexpr std::int64_t kDefaultTets = 20000;
-
 bool has_size(const BodySettings& body) {
   return body.tets > 0 || body.edge > 0 || body.error.value > 0 || !body.tetrahedra.empty();
 }
@@ -82,8 +79,8 @@ DialRequest dial_request(Shot shot, const BodySettings& body, const LoadedBody& 
   request.error = shot.dial.error;
   request.size = used_bounds(loaded.surface).diagonal();
   request.dynamic = !is_static(shot);
-  request.given_tets = body.tets;
-  if (body.tets == 0 && (has_size(body) || loaded.given))
+  request.given_tets = loaded.given ? 0 : body.tets;  // given tetrahedra are as many as they are
+  if (request.given_tets == 0 && (has_size(body) || loaded.given))
     request.given_tets =
         static_cast<std::int64_t>(fill_body(body, loaded, filled_key(body, loaded), context).mesh.tets.size());
   request.given_substeps = is_static(shot) ? 1 : shot.solver.substeps;

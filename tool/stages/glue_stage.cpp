@@ -133,9 +133,11 @@ StageKey GlueGroup::base_key() const {
 
 std::vector<BodyModel> GlueGroup::make_models() const {
   std::vector<BodyModel> models;
-  for (const GlueMember& member : members_)
+  for (const GlueMember& member : members_) {
+    require_regions(member.settings, member.loaded, member.simulation.filled().mesh);
     models.push_back(make_body_model(shot_, member.settings, member.loaded, member.simulation.filled(),
                                      member.simulation.constraints()));
+  }
   return models;
 }
 

@@ -53,6 +53,22 @@ void add_tet_facts(const TetMesh& mesh, const Threads& threads, std::vector<std:
                               mesh.tets.size(), mesh.nodes.size(), quality.min_dihedral, quality.max_dihedral));
 }
 
+/// Says which fields of the body's tetrahedra have no effect, as they are given.
+void say_ignored(const BodySettings& body, const Log& log) {
+  const std::string file = body.tetrahedra.empty() ? body.mesh : body.tetrahedra;
+  const auto say = [&](bool is_set, const char* field) {
+    if (is_set)
+      log.warn(fmt::format("{}: body.{}.{} has no effect: {} gives the tetrahedra.", to_string(body.origin), body.name,
+                           field, file));
+  };
+  say(body.tets > 0 && body.tets != kDefaultTets, "tets");
+  say(body.edge > 0, "edge");
+  say(body.error.value > 0, "error");
+  say(body.graded, "graded");
+  say(body.mode != TetMode::Conforming, "mode");
+  say(body.thickness > 0, "thickness");
+}
+
 StageKey given_key(const TetMesh& mesh) {
   return KeyHasher("given tetrahedra 1").add(mesh.nodes).add(mesh.tets).key();
 }
@@ -76,6 +92,7 @@ LoadedBody load_body(const BodySettings& body, const RunContext& context, std::s
   apply(loaded.placement, loaded.surface);
   loaded.key = KeyHasher("surface 1").add(loaded.surface.positions).add(loaded.surface.triangles).key();
   if (!loaded.given) return loaded;
+  say_ignored(body, context.log);
   add_tet_facts(*loaded.given, context.threads, loaded.facts);
   loaded.given_key = given_key(*loaded.given);
   for (Vec3& node : loaded.given->nodes) node = loaded.placement(node);

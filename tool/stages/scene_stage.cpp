@@ -49,6 +49,13 @@ SceneStage::SceneStage(ShotRun& run) : run_(run), textures_(run.shot()) {
   if (const StageKey key = coloring.key(); key != none) coloring_key_ = key;
 }
 
+/// The picture's upright of a camera that looks straight down or up, as if it had been tilted there from the front.
+Vec3f upright(const Camera& camera) {
+  const Vec3f forward = (camera.target - camera.position).normalized();
+  if (!(forward.cross(Vec3f::UnitY()).norm() <= 1e-3f)) return Vec3f::UnitY();
+  return Vec3f(0, 0, forward.y() < 0 ? -1.0f : 1.0f);
+}
+
 Camera camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
   Camera camera;
   camera.focal_length_mm = static_cast<float>(settings.focal_length_mm.at(frame));
@@ -59,6 +66,7 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
   if (settings.mode == CameraMode::Place) {
     camera.position = settings.position.at(frame).cast<float>();
     camera.target = settings.target.at(frame).cast<float>();
+    camera.up = upright(camera);
     return camera;
   }
   constexpr double kRadians = std::numbers::pi / 180;
@@ -82,6 +90,7 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
   }
   camera.target = target.cast<float>();
   camera.position = (target + distance * toward_camera).cast<float>();
+  if (std::abs(toward_camera.y()) > 1 - 1e-6) camera.up = up.cast<float>();
   return camera;
 }
 

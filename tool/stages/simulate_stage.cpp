@@ -43,6 +43,7 @@ SimulationSource source_of(const Shot& shot, const BodySettings& settings, const
           simulation_keys(shot, solver_of(shot, settings), constraints, filled, materials_key(shot, settings, loaded)),
           [&settings, &loaded, filled, &context] { return fill_body(settings, loaded, filled, context); },
           [&shot, &settings, &loaded](const FilledBody& body, const BodyConstraints& held) {
+            require_regions(settings, loaded, body.mesh);
             return make_body_model(shot, settings, loaded, body, held);
           }};
 }

@@ -20,7 +20,7 @@ std::vector<double> color_weights(const BodySettings& body, const SurfaceMesh& m
                     "Paint the mesh, or give the weights as a file.",
                     body.mesh));
   const Eigen::Index c = channel == "red" ? 0 : channel == "green" ? 1 : 2;
-  const bool linear = body.mesh.ends_with(".gltf") || body.mesh.ends_with(".glb");
+  const bool linear = detail::has_linear_colors(body.mesh);
   std::vector<double> weights;
   for (const Vec3f& color : mesh.colors)
     weights.push_back(double{linear ? std::clamp(color[c], 0.0f, 1.0f) : srgb_encode(color[c])});

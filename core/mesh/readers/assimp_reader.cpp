@@ -88,7 +88,7 @@ class SceneMerger {
   void add_colors(const aiMesh& part) {
     if (!part.HasVertexColors(0)) return;
     pad_colors(mesh_.colors, mesh_.positions.size() - part.mNumVertices);
-    const bool linear = path_.ends_with(".gltf") || path_.ends_with(".glb");
+    const bool linear = has_linear_colors(path_);
     for (unsigned v = 0; v < part.mNumVertices; ++v) {
       const aiColor4D& c = part.mColors[0][v];
       mesh_.colors.push_back(linear ? Vec3f(c.r, c.g, c.b) : displayed_color(double{c.r}, double{c.g}, double{c.b}));

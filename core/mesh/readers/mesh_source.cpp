@@ -73,6 +73,11 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
+bool has_linear_colors(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".gltf" || extension == ".glb";
+}
+
 Error broken_file(const MeshSource& source, const std::string& place, const std::string& problem,
                   const std::string& accepted, const std::string& advice) {
   return input_error(

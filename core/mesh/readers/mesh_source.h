@@ -32,6 +32,9 @@ std::string read_mesh_file(const std::string& path);
 /// ".obj", in small letters; "" if the path has none.
 std::string lower_extension(const std::string& path);
 
+/// Whether colours of vertices in such a file are linear: those of glTF are, by its specification.
+bool has_linear_colors(const std::string& path);
+
 /// The error of a file that breaks its format. place: ":12" for a line, " (byte 80)" in a binary file, or "".
 Error broken_file(const MeshSource& source, const std::string& place, const std::string& problem,
                   const std::string& accepted, const std::string& advice);

@@ -61,6 +61,16 @@ TEST(GivenTets, AreABodyOfTheirOwnInTheirNodesOrder) {
   EXPECT_EQ(pc2_points(folder + "/out/ball.ball.pc2"), tets["nodes"].get<std::uint32_t>());
 }
 
+TEST(GivenTets, SayWhichFieldsHaveNoEffectBesideThem) {
+  const std::string folder = folder_with_tets("given_beside");
+  const Outcome outcome =
+      run(fmt::format("softreel simulate {0}/shot.toml --output {0}/out --quiet --frames 1 --set "
+                      "body.mesh={0}/ball.vtu --set body.tets=77",
+                      folder));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("body.ball.tets has no effect"), std::string::npos) << outcome.err;
+}
+
 TEST(GivenTets, OfAnotherBodyAreRefused) {
   const std::string folder = folder_with_tets("given_wrong");
   write_text(folder + "/big.toml", sphere_shot());

@@ -50,6 +50,22 @@ TEST_F(UsePresets, ReplacesTheAlternativeOfALowerLayer) {
   EXPECT_EQ(shot.bodies[0].fit, 2);
 }
 
+TEST_F(UsePresets, ASwitchThatIsOffIsNoAlternative) {
+  EXPECT_EQ(message(body("[material.skin]\nbase_color = [0.8, 0.1, 0.1]\nvertex_colors = false\n")), "");
+  write("red.toml", "[material.skin]\nbase_color = [0.8, 0.1, 0.1]\n");
+  write("painted.toml", "[material.skin]\nvertex_colors = true\n");
+  const auto colour = [&](const std::string& text, const std::vector<std::string>& sets) {
+    return load(text, sets).materials.at("skin").appearance.base_color;
+  };
+  const std::string red = "use = [\"red.toml\"]\n" + body("");
+  EXPECT_EQ(colour(red + "[material.skin]\nvertex_colors = false\n", {}), Vec3f(0.8f, 0.1f, 0.1f));
+  EXPECT_EQ(colour(red, {"material.skin.vertex_colors=false"}), Vec3f(0.8f, 0.1f, 0.1f));
+  EXPECT_EQ(
+      colour("use = [\"painted.toml\"]\n" + body("[material.skin]\nvertex_colors = false\nbase_color = [0, 1, 0]\n"),
+             {}),
+      Vec3f(0, 1, 0));
+}
+
 TEST_F(UsePresets, KeepsThePlaceOfEachValue) {
   write("presets/gel.toml", "[material.gel]\npoisson_ratio = 0.5\n");
   const std::string text = message("use = [\"presets/gel.toml\"]\n" + body("[material.gel]\ndensity = 0\n"));

@@ -88,6 +88,10 @@ TEST_F(SetOverrides, LieAboveTheQualityAndThatAboveTheShot) {
   const std::string other = message(text, {"quality=other.toml"});
   EXPECT_NE(other.find("other.toml:3:1: body.b"), std::string::npos) << other;
   EXPECT_NE(other.find("Accepted: a."), std::string::npos) << other;
+  write("misspelt.toml", "[material.skinn]\nsubsurface = 0\n");
+  const std::string misspelt = message(text + "[material.skin]\ndensity = 900\n", {"quality=misspelt.toml"});
+  for (const char* part : {"misspelt.toml:1:", "material.skinn", "Did you mean 'skin'?"})
+    EXPECT_NE(misspelt.find(part), std::string::npos) << misspelt;
   const std::string bodiless = message("[render]\nwidth = 3\n", {"quality=draft"});
   EXPECT_TRUE(bodiless.starts_with("s.toml:")) << "where the body is to be added: " << bodiless;
 }

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "render/scene/camera_frame.h"
+
 namespace softreel {
 namespace {
 
@@ -50,6 +52,21 @@ TEST(CameraAt, AzimuthZeroLooksFromTheFront) {
   EXPECT_NEAR(camera.position.x(), 0, 1e-5);
   EXPECT_NEAR(camera.position.y(), 1, 1e-5);
   EXPECT_GT(camera.position.z(), 1);
+}
+
+TEST(CameraAt, LooksStraightDownAndUpWithTheFrontBelowOrAbove) {
+  const Bounds box{Vec3(-1, 0, -1), Vec3(1, 2, 1)};
+  for (const double elevation : {90.0, -90.0}) {
+    const CameraFrame framed = camera_frame(camera_at(framing(0, elevation, 1), 1, box, 1), 8, 8);
+    EXPECT_NEAR((framed.right - Vec3f::UnitX()).norm(), 0, 1e-5f) << elevation;
+    EXPECT_NEAR((framed.up - Vec3f(0, 0, elevation > 0 ? -1 : 1)).norm(), 0, 1e-5f) << elevation;
+    CameraSettings placed = framing(0, 0, 1);
+    placed.mode = CameraMode::Place;
+    placed.position.keys = {{1, Vec3(0, elevation > 0 ? 5 : -5, 0), Ease::Linear}};
+    placed.target.keys = {{1, Vec3(0, 0, 0), Ease::Linear}};
+    const CameraFrame frame = camera_frame(camera_at(placed, 1, box, 1), 8, 8);
+    EXPECT_NEAR((frame.right - framed.right).norm() + (frame.up - framed.up).norm(), 0, 1e-5f) << elevation;
+  }
 }
 
 TEST(CameraAt, FollowsItsKeys) {

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
+#include "tests/support/bcc_bar.h"
+
 namespace softreel {
 namespace {
 
@@ -162,6 +165,31 @@ TEST(FrameKey, KnowsTheConstraintsAtEveryTimeThatErrorControlMayLookAt) {
   const auto after = simulation_keys(shot, shot.solver, constraints, "filled", "materials");
   EXPECT_EQ(before[19], after[19]);
   EXPECT_NE(before[20], after[20]);
+}
+
+TEST(Regions, TakeTetrahedraInsideTheBodyAndRefuseToTakeNone) {
+  const TetMesh mesh = testing::kuhn_bar({4, 4, 4}, Vec3::Ones());
+  LoadedBody loaded;
+  loaded.surface.positions = mesh.nodes;
+  loaded.surface.triangles = boundary_faces(mesh);
+  Shot shot;
+  shot.materials["flesh"].physics.youngs_modulus = 1e5;
+  BodySettings body;
+  body.material = "flesh";
+  body.regions.resize(1);
+  body.regions[0].stiffness = 50.0;
+  // Its points are all inside: a bone.
+  body.regions[0].select.terms = {{SelectSphere{Vec3::Constant(0.5), 0.2}, SelectionUnit::Meter}};
+  KeyHasher key("materials");
+  EXPECT_NO_THROW(add_materials(key, shot, body, loaded));
+  EXPECT_NO_THROW(require_regions(body, loaded, mesh));
+  double stiffest = 0;
+  for (const ElementMaterial& material : element_materials(shot, body, loaded, mesh))
+    stiffest = std::max(stiffest, material.youngs_modulus);
+  EXPECT_EQ(stiffest, 50e5);
+  // Takes a corner of the surface, and no tetrahedron.
+  body.regions[0].select.terms = {{SelectSphere{Vec3::Zero(), 1e-3}, SelectionUnit::Meter}};
+  EXPECT_THROW(require_regions(body, loaded, mesh), Error);
 }
 
 TEST(FrameKey, PhysicsChangesEveryFrame) {
