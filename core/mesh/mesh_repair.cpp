@@ -30,9 +30,28 @@ std::int64_t keep_triangles(SurfaceMesh& mesh, const std::vector<char>& kept) {
   return removed;
 }
 
-void flip_triangle(SurfaceMesh& mesh, std::size_t t) {
+/// Triangles that were turned, and turned back.
+using Turned = std::vector<char>;
+
+void flip_triangle(SurfaceMesh& mesh, std::size_t t, Turned& turned) {
   std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   if (!mesh.triangle_textures.empty()) std::swap(mesh.triangle_textures[t][1], mesh.triangle_textures[t][2]);
+  turned[t] = turned[t] == 0 ? 1 : 0;
+}
+
+/// Polygons go as their triangles do: they are what exports write. Their first corners stay.
+void turn_polygons(SurfaceMesh& mesh, const Turned& turned) {
+  PolygonList& polygons = mesh.polygons;
+  if (polygons.size() == 0) return;  // a surface that was made of triangles
+  std::vector<char> done(polygons.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangle_polygon.size(); ++t) {
+    const auto p = static_cast<std::size_t>(mesh.triangle_polygon[t]);
+    if (turned[t] == 0 || done[p] != 0) continue;
+    done[p] = 1;
+    for (std::vector<Index>* corners : {&polygons.corner_vertices, &polygons.corner_textures})
+      if (!corners->empty())
+        std::reverse(corners->begin() + polygons.offsets[p] + 1, corners->begin() + polygons.offsets[p + 1]);
+  }
 }
 
 void remove_not_finite(SurfaceMesh& mesh, std::vector<std::string>& lines) {
@@ -189,7 +208,7 @@ double triangle_area(const SurfaceMesh& mesh, std::size_t t) {
 }
 
 /// Makes neighbours agree: within each piece the smaller area gives way. Returns the piece of each triangle.
-std::vector<Index> make_consistent(SurfaceMesh& mesh, const std::vector<HalfEdge>& sides,
+std::vector<Index> make_consistent(SurfaceMesh& mesh, const std::vector<HalfEdge>& sides, Turned& turned,
                                    std::vector<std::string>& lines) {
   const Orientation orientation = orient(sides, mesh.triangles.size());
   std::vector<double> balance(orientation.one_sided.size(), 0);  // area to keep minus area to flip
@@ -200,7 +219,7 @@ std::vector<Index> make_consistent(SurfaceMesh& mesh, const std::vector<HalfEdge
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto piece = static_cast<std::size_t>(orientation.piece[t]);
     if (orientation.one_sided[piece] != 0 || (orientation.flip[t] != 0) != (balance[piece] >= 0)) continue;
-    flip_triangle(mesh, t);
+    flip_triangle(mesh, t, turned);
     ++flipped;
   }
   if (flipped > 0) lines.push_back(fmt::format("{} triangle(s) turned to agree with their neighbours", flipped));
@@ -213,33 +232,34 @@ std::vector<Index> make_consistent(SurfaceMesh& mesh, const std::vector<HalfEdge
 /// Marks the pieces whose own half edges cancel along every edge.
 std::vector<char> find_closed(const std::vector<HalfEdge>& sides, const std::vector<Index>& piece, std::size_t pieces) {
   std::vector<char> closed(pieces, 1);
-  std::vector<std::pair<Index, int>> balance;  // piece, half edges forward minus backward
+  std::vector<std::pair<Index, int>> balance;  // piece, 1 for a half edge forward, -1 for one backward
   for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
     balance.clear();
-    for (const HalfEdge& side : edge) {
-      const Index own = piece[static_cast<std::size_t>(side.triangle)];
-      auto entry = std::find_if(balance.begin(), balance.end(), [&](const auto& e) { return e.first == own; });
-      if (entry == balance.end()) entry = balance.insert(balance.end(), {own, 0});
-      entry->second += side.forward ? 1 : -1;
+    for (const HalfEdge& side : edge)
+      balance.emplace_back(piece[static_cast<std::size_t>(side.triangle)], side.forward ? 1 : -1);
+    std::sort(balance.begin(), balance.end());
+    for (std::size_t begin = 0, end = 0; begin < balance.size(); begin = end) {
+      int sum = 0;
+      for (end = begin; end < balance.size() && balance[end].first == balance[begin].first; ++end)
+        sum += balance[end].second;
+      if (sum != 0) closed[static_cast<std::size_t>(balance[begin].first)] = 0;
     }
-    for (const auto& [own, sum] : balance)
-      if (sum != 0) closed[static_cast<std::size_t>(own)] = 0;
   });
   return closed;
 }
 
 void turn_outward(SurfaceMesh& mesh, const std::vector<HalfEdge>& sides, const std::vector<Index>& piece,
-                  std::vector<std::string>& lines) {
+                  Turned& turned, std::vector<std::string>& lines) {
   const std::size_t pieces =
       piece.empty() ? 0 : static_cast<std::size_t>(*std::max_element(piece.begin(), piece.end())) + 1;
   const std::vector<char> closed = find_closed(sides, piece, pieces);
   const std::vector<char> flip = find_inverted_shells(mesh, piece, closed);
-  const auto turned = std::count(flip.begin(), flip.end(), 1);
-  if (turned == 0) return;
+  const auto inverted = std::count(flip.begin(), flip.end(), 1);
+  if (inverted == 0) return;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (flip[static_cast<std::size_t>(piece[t])] != 0) flip_triangle(mesh, t);
+    if (flip[static_cast<std::size_t>(piece[t])] != 0) flip_triangle(mesh, t, turned);
   lines.push_back(pieces == 1 ? "all faces pointed inward: turned outward"
-                              : fmt::format("{} of {} pieces turned outward", turned, pieces));
+                              : fmt::format("{} of {} pieces turned outward", inverted, pieces));
 }
 
 }  // namespace
@@ -257,8 +277,10 @@ std::vector<std::string> repair_mesh(SurfaceMesh& mesh) {
   remove_collapsed(mesh, weld, lines);
   remove_duplicates(mesh, weld, lines);
   const std::vector<HalfEdge> given = sorted_half_edges(welded_triangles(mesh.triangles, weld));
-  const std::vector<Index> piece = make_consistent(mesh, given, lines);
-  turn_outward(mesh, sorted_half_edges(welded_triangles(mesh.triangles, weld)), piece, lines);
+  Turned turned(mesh.triangles.size(), 0);
+  const std::vector<Index> piece = make_consistent(mesh, given, turned, lines);
+  turn_outward(mesh, sorted_half_edges(welded_triangles(mesh.triangles, weld)), piece, turned, lines);
+  turn_polygons(mesh, turned);
   return lines;
 }
 

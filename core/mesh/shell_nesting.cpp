@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/mesh/box_tree.h"
 #include "core/mesh/mesh_topology.h"
 
 namespace softreel {
@@ -40,10 +41,6 @@ std::vector<Shell> collect_shells(const SurfaceMesh& mesh, const std::vector<Ind
     for (const Triangle& t : shell.triangles) shell.volume6 += signed_volume6(at(t[0]), at(t[1]), at(t[2]));
   }
   return shells;
-}
-
-bool box_contains(const Bounds& outer, const Bounds& inner) {
-  return (outer.min.array() <= inner.min.array()).all() && (outer.max.array() >= inner.max.array()).all();
 }
 
 /// Direction of all rays, one that no modelled face or edge has, and two across it.
@@ -151,14 +148,17 @@ std::vector<char> find_inverted_shells(const SurfaceMesh& mesh, const std::vecto
   std::vector<std::unique_ptr<SlicedShell>> sliced(shells.size());  // once something lies in their box
   std::vector<Bounds> boxes;
   for (const Shell& shell : shells) boxes.push_back(shell.bounds);
+  const BoxTree tree(boxes);
   for (std::size_t s = 0; s < shells.size(); ++s) {
-    for (std::size_t outer = s; outer-- > 0;) {
-      if (!box_contains(boxes[outer], boxes[s])) continue;
-      if (sliced[outer] == nullptr) sliced[outer] = std::make_unique<SlicedShell>(mesh, shells[outer]);
-      if (!contains_shell(mesh, *sliced[outer], shells[s])) continue;
-      const bool alike = (shells[outer].volume6 > 0) == (shells[s].volume6 > 0);
-      shells[s].wanted_outward = shells[outer].wanted_outward == alike;
-      break;
+    const Index around = tree.find_last_around(boxes[s], static_cast<Index>(s), [&](Index outer) {
+      std::unique_ptr<SlicedShell>& slices = sliced[static_cast<std::size_t>(outer)];
+      if (slices == nullptr) slices = std::make_unique<SlicedShell>(mesh, shells[static_cast<std::size_t>(outer)]);
+      return contains_shell(mesh, *slices, shells[s]);
+    });
+    if (around >= 0) {
+      const Shell& outer = shells[static_cast<std::size_t>(around)];
+      const bool alike = (outer.volume6 > 0) == (shells[s].volume6 > 0);
+      shells[s].wanted_outward = outer.wanted_outward == alike;
     }
     if (shells[s].volume6 == 0) continue;
     inverted[static_cast<std::size_t>(shells[s].piece)] = (shells[s].volume6 > 0) != shells[s].wanted_outward;

@@ -14,7 +14,8 @@ struct VertexGroup {
   std::vector<Index> vertices;  ///< sorted, unique
 };
 
-/// Polygons as the file has them; polygon p owns the corners [offsets[p], offsets[p + 1]).
+/// Polygons as the file has them, but for the winding of those that repair_mesh turned; polygon p owns the corners
+/// [offsets[p], offsets[p + 1]).
 struct PolygonList {
   std::vector<Index> offsets{0};       ///< polygons + 1
   std::vector<Index> corner_vertices;  ///< index into positions, per corner
@@ -32,7 +33,7 @@ struct SurfaceMesh {
   std::vector<Vec3> positions;            ///< vertices x 3, m after placement, file units before
   std::vector<Vec2> texture_coordinates;  ///< as in the file
   std::vector<Vec3f> colors;              ///< per vertex, linear RGB; empty if the file has none
-  PolygonList polygons;                   ///< as in the file
+  PolygonList polygons;                   ///< as in the file, see there
   std::vector<VertexGroup> groups;
 
   /// Per vertex the one that it counts as where triangles are connected; empty: the first of exactly its position.

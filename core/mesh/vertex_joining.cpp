@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numeric>
+#include <utility>
 
 #include "core/mesh/mesh_topology.h"
+#include "core/mesh/point_tree.h"
 
 namespace softreel {
 namespace {
@@ -35,48 +34,6 @@ std::vector<double> rim_reaches(const SurfaceMesh& mesh, const std::vector<Index
   return reaches;
 }
 
-/// Vertices by cubic cells: the cell's place as a number, x before y before z.
-struct CellEntry {
-  std::uint64_t key;
-  Index vertex;
-};
-
-/// Steps of the key along x and y; each place has a margin of 1 on either side.
-constexpr std::uint64_t kStepY = std::uint64_t{1} << 21, kStepX = kStepY << 21;
-
-std::vector<CellEntry> sort_into_cells(const SurfaceMesh& mesh, const std::vector<Index>& vertices, double size) {
-  Bounds box;
-  for (const Index v : vertices) box.add(mesh.positions[static_cast<std::size_t>(v)]);
-  std::vector<CellEntry> cells;
-  for (const Index v : vertices) {
-    const Vec3 place = (mesh.positions[static_cast<std::size_t>(v)] - box.min) / size;
-    const auto number = [&](int axis) { return static_cast<std::uint64_t>(place[axis]) + 1; };
-    cells.push_back({number(0) * kStepX + number(1) * kStepY + number(2), v});
-  }
-  std::sort(cells.begin(), cells.end(), [](const CellEntry& a, const CellEntry& b) {
-    return a.key < b.key || (a.key == b.key && a.vertex < b.vertex);
-  });
-  return cells;
-}
-
-/// Calls visit(a, b) once for each pair of vertices in one cell or in neighbouring ones. Linear in their number.
-template <typename Visit>
-void visit_neighbours(const std::vector<CellEntry>& cells, const Visit& visit) {
-  // Forward neighbours: the rest of the own column of cells, and the four columns beside it, three cells of each.
-  for (const std::uint64_t column : {std::uint64_t{0}, kStepY, kStepX - kStepY, kStepX, kStepX + kStepY}) {
-    std::size_t begin = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (column == 0) {
-        begin = i + 1;
-      } else {
-        while (begin < cells.size() && cells[begin].key + 1 < cells[i].key + column) ++begin;
-      }
-      for (std::size_t j = begin; j < cells.size() && cells[j].key <= cells[i].key + column + 1; ++j)
-        visit(cells[i].vertex, cells[j].vertex);
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<Index> join_vertices(const SurfaceMesh& mesh, std::int64_t& joined) {
@@ -90,10 +47,16 @@ std::vector<Index> join_vertices(const SurfaceMesh& mesh, std::int64_t& joined) 
   const auto reach = [&](Index v) { return reaches[static_cast<std::size_t>(v)]; };
   const auto position = [&](Index v) -> const Vec3& { return mesh.positions[static_cast<std::size_t>(v)]; };
   DisjointSets sets(mesh.positions.size());
-  visit_neighbours(sort_into_cells(mesh, rim, kReach * used_bounds(mesh).diagonal()), [&](Index a, Index b) {
-    const double both = std::min(reach(a), reach(b));
-    if ((position(a) - position(b)).squaredNorm() <= both * both) sets.join(a, b);
-  });
+  std::vector<Vec3> places;
+  for (const Index v : rim) places.push_back(position(v));
+  const PointTree tree(std::move(places));
+  // Asked with each one's own reach: one used vertex far away makes the others' limit large, not their edges.
+  for (const Index v : rim)
+    tree.visit_near(position(v), reach(v), [&](Index i) {
+      const Index other = rim[static_cast<std::size_t>(i)];
+      const double both = std::min(reach(v), reach(other));
+      if (other != v && (position(v) - position(other)).squaredNorm() <= both * both) sets.join(v, other);
+    });
   for (const Index v : rim) joined += sets.root(v) != v ? 1 : 0;
   for (Index& v : weld) v = sets.root(v);
   return weld;

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/mesh/mesh_topology.h"
+#include "core/tetmesh/triangle_halves.h"
 
 namespace softreel {
 namespace {
 
 constexpr std::int64_t kCutGrain = 256;
-
-using TriangleCorners = std::array<Vec3, 3>;
 
 /// Which side of a triangle runs between two welded vertices.
 std::size_t side_of(const Triangle& welded, const HalfEdge& half) {
@@ -24,31 +24,29 @@ void join_edge(LatticeSurface& surface, const std::vector<Triangle>& welded, std
                Index& joints) {
   const bool rim = !is_balanced(edge);
   const bool plain = edge.size() == 2 && !rim;
-  std::vector<std::pair<Index, Index>> ends;
+  std::map<std::pair<Index, Index>, Index> ends;  // in the order they come up
   const Index first = joints;
   for (const HalfEdge& half : edge) {
     const std::size_t k = side_of(welded[at(half.triangle)], half);
     const Triangle& triangle = surface.triangles[at(half.triangle)];
     const std::pair<Index, Index> own = std::minmax(triangle[k], triangle[(k + 1) % 3]);
-    const auto found = plain ? ends.begin() : std::find(ends.begin(), ends.end(), own);
-    surface.joints[at(half.triangle)][k] = first + static_cast<Index>(found - ends.begin());
-    if (found == ends.end()) ends.push_back(own);
+    const auto number = static_cast<Index>(ends.size());
+    const Index end = plain && number > 0 ? 0 : ends.emplace(own, number).first->second;
+    surface.joints[at(half.triangle)][k] = first + end;
     if (rim) surface.rims[at(half.triangle)] |= static_cast<std::uint8_t>(1U << k);
   }
   joints += static_cast<Index>(ends.size());
   surface.closed = surface.closed && !rim;
 }
 
-/// Collects the cells whose boxes overlap that of a triangle; a large one is quartered first, so that it does not fill
-/// the whole of its box.
+/// Collects the cells whose boxes overlap that of a triangle; a large one is halved first, so that it does not fill the
+/// whole of its box.
 void find_candidates(const TriangleCorners& x, std::vector<std::uint64_t>& cells) {
   constexpr double kSmall = 6, kMargin = 1e-6;
   const Vec3 low = x[0].cwiseMin(x[1]).cwiseMin(x[2]).array() - kMargin;
   const Vec3 high = x[0].cwiseMax(x[1]).cwiseMax(x[2]).array() + kMargin;
   if ((high - low).maxCoeff() > kSmall) {
-    const Vec3 ab = 0.5 * (x[0] + x[1]), bc = 0.5 * (x[1] + x[2]), ca = 0.5 * (x[2] + x[0]);
-    for (const TriangleCorners& quarter : {TriangleCorners{x[0], ab, ca}, {ab, x[1], bc}, {ca, bc, x[2]}, {bc, ca, ab}})
-      find_candidates(quarter, cells);
+    for (const TriangleCorners& half : halved(x)) find_candidates(half, cells);
     return;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -96,6 +96,26 @@ struct CountedFilling {
   bool is_fitted = false;  ///< not where base edges alone took too many
 };
 
+/// Halvings of the base edge that are wanted and that the lattice's coordinates have room for.
+int halvings(const ErrorBudgetParams& params, const Bounds& box, double base_edge) {
+  if (params.error == 0 && params.tets == 0) return 0;                              // nothing is refined
+  const double edges = box.size().maxCoeff() / base_edge + (16 << params.coarser);  // and a layer of cells round it
+  int finer = params.finer;
+  while (finer > 0 && std::ldexp(edges, finer) > 0.5 * kMaxLatticeCoordinate) --finer;  // top_level needs room too
+  return finer;
+}
+
+/// Level of the cells that cover the box: higher than asked where a thin body stands askew in a box of so many that
+/// they, not the body, would take the memory. Only far inside of a body could cells be that large.
+int top_level(const Bounds& box, const LatticeFrame& frame, int wanted) {
+  constexpr double kMostCells = 1 << 20;
+  constexpr int kHighest = 15;  // four such cells are half of the coordinates
+  int top = wanted;
+  const auto cells = [&] { return (box.size() / std::ldexp(frame.spacing, top)).array().max(0.0).matrix(); };
+  while (top < kHighest && (cells() + Vec3::Constant(3)).prod() > kMostCells) ++top;
+  return top;
+}
+
 class Filling {
  public:
   Filling(const FilledSurface& filled, const ErrorBudgetParams& params, const Threads& threads)
@@ -104,13 +124,13 @@ class Filling {
         filled_(filled),
         base_edge_(params.base_edge > 0 ? params.base_edge : kBaseEdge * params.error),
         error_(params.error > 0 ? params.error : base_edge_ / kBaseEdge),
-        frame_{filled.box().center(), std::ldexp(base_edge_, -params.finer)},
-        octree_(frame_, filled.box(), params.finer + params.coarser),
+        finer_(halvings(params, filled.box(), base_edge_)),
+        frame_{filled.box().center(), std::ldexp(base_edge_, -finer_)},
+        octree_(frame_, filled.box(), top_level(filled.box(), frame_, finer_ + params.coarser)),
         visible_(filled.visible(error_, threads)),
         samples_(filled.sample(visible_, kSampleStep * error_)) {
     const std::vector<Vec3>& x = filled.surface().positions;
-    for (const auto& [a, b, c] : filled.surface().triangles)
-      octree_.refine({x[at(a)], x[at(b)], x[at(c)]}, params.finer);
+    for (const auto& [a, b, c] : filled.surface().triangles) octree_.refine({x[at(a)], x[at(b)], x[at(c)]}, finer_);
   }
 
   GradedFilling run() {
@@ -254,7 +274,7 @@ class Filling {
     filling.stuffed = stuff_octree(octree_, known_.lattice.nodes, known_.lattice.values);
     mend_boundary(filling.stuffed);
     filling.stuffed.mesh.lattice = {frame_.origin, base_edge_};
-    filling.finest_edge = frame_.spacing;
+    filling.finest_edge = octree_.finest_edge();
     return filling;
   }
 
@@ -288,6 +308,7 @@ class Filling {
   const Threads& threads_;
   const FilledSurface& filled_;
   double base_edge_, error_;
+  int finer_;                 ///< halvings of the base edge, at most
   double narrowest_ = 1e300;  ///< for an error: the least of the widest gaps, and the round it was met in; for a
                               ///< count: of those that were refined
   int narrowest_round_ = 0;

@@ -18,6 +18,9 @@ struct Probe {
   double distance = 0;
 };
 
+/// Square of the shortest side over the longest: below, quarters come as thin as the triangle is.
+constexpr double kNeedle = 0.1 * 0.1;
+
 class Search {
  public:
   /// lower: a distance known to be reached. smallest: triangles with shorter edges are not quartered, m.
@@ -41,11 +44,7 @@ class Search {
     const double enough = best_ * (1 + tolerance_);
     if (std::max({a.distance, b.distance, c.distance}) + 0.578 * longest <= enough) return;
     if (upper_bound(a, b, c) <= enough) return;
-    const Probe ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    visit(a, ab, ca);
-    visit(ab, b, bc);
-    visit(ca, bc, c);
-    visit(ab, bc, ca);
+    divide(a, b, c, [this](const Probe& p, const Probe& q, const Probe& r) { visit(p, q, r); });
   }
 
   /// Appends corners that are further away than the lower bound, or points between them if no corner is.
@@ -58,14 +57,38 @@ class Search {
     if (far.size() > before || !(longest > smallest_)) return;
     if (std::max({a.distance, b.distance, c.distance}) + 0.578 * longest <= best_) return;
     if (upper_bound(a, b, c) <= best_) return;
-    const Probe ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    collect(a, ab, ca, far);
-    collect(ab, b, bc, far);
-    collect(ca, bc, c, far);
-    collect(ab, bc, ca, far);
+    divide(a, b, c, [&](const Probe& p, const Probe& q, const Probe& r) { collect(p, q, r, far); });
   }
 
  private:
+  /// Into quarters; a needle, of which they would be as long and half as wide, into halves of its length.
+  template <typename Take>
+  void divide(const Probe& a, const Probe& b, const Probe& c, const Take& take) const {
+    const double ab2 = (a.point - b.point).squaredNorm(), bc2 = (b.point - c.point).squaredNorm(),
+                 ca2 = (c.point - a.point).squaredNorm();
+    const double longest = std::max({ab2, bc2, ca2});
+    if (std::min({ab2, bc2, ca2}) < kNeedle * longest) {
+      const Probe &p = longest == ab2   ? a
+                       : longest == bc2 ? b
+                                        : c,
+                  &q = longest == ab2   ? b
+                       : longest == bc2 ? c
+                                        : a,
+                  &r = longest == ab2   ? c
+                       : longest == bc2 ? a
+                                        : b;
+      const Probe between = middle(p, q);
+      take(p, between, r);
+      take(between, q, r);
+      return;
+    }
+    const Probe ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    take(a, ab, ca);
+    take(ab, b, bc);
+    take(ca, bc, c);
+    take(ab, bc, ca);
+  }
+
   Probe middle(const Probe& a, const Probe& b) const { return probe(tree_, 0.5 * (a.point + b.point), a.leaf_place); }
 
   double upper_bound(const Probe& a, const Probe& b, const Probe& c) const {

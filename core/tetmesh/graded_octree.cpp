@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/check.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
@@ -82,11 +83,19 @@ GradedOctree::GradedOctree(const LatticeFrame& frame, const Bounds& box, std::in
     const auto first = static_cast<std::int32_t>(std::floor(min[axis])) - 1;
     low_[k] = first * width;
     counts_[k] = static_cast<std::int32_t>(std::floor(max[axis])) + 2 - first;
+    const std::int64_t high = low_[k] + std::int64_t{counts_[k]} * width;
+    CHECK(std::max(-std::int64_t{low_[k]}, high) <= kMaxLatticeCoordinate);
   }
   for (std::int32_t z = 0; z < counts_[2]; ++z)
     for (std::int32_t y = 0; y < counts_[1]; ++y)
       for (std::int32_t x = 0; x < counts_[0]; ++x)
         cells_.push_back({{low_[0] + x * width, low_[1] + y * width, low_[2] + z * width}, top});
+}
+
+double GradedOctree::finest_edge() const {
+  std::int32_t least = top_;
+  for (const OctreeCell& cell : cells_) least = std::min(least, cell.level);
+  return std::ldexp(frame_.spacing, least);
 }
 
 Index GradedOctree::find_leaf(const LatticeNode& unit) const {

@@ -37,6 +37,9 @@ class GradedOctree {
   /// Splits the leaf that holds a point, and those within `margin` of their widths of it (at most 0.5), likewise.
   void refine(const Vec3& point, std::int32_t level, double margin);
 
+  /// Width of the smallest leaf, m.
+  double finest_edge() const;
+
   /// Level of the leaf that holds a point; the top level outside.
   std::int32_t level_at(const Vec3& point) const;
 

@@ -5,6 +5,7 @@
 
 #include "core/base/check.h"
 #include "core/tetmesh/key_index.h"
+#include "core/tetmesh/triangle_halves.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
@@ -13,8 +14,6 @@ namespace {
 /// Triangles are sorted into cubes of so many voxels, which are measured one by one; the band adds half of that on
 /// either side.
 constexpr std::int32_t kBlockSize = 8;
-
-using TriangleCorners = std::array<Vec3, 3>;
 
 std::int32_t block_of(double voxel) {
   return static_cast<std::int32_t>(std::floor(voxel / kBlockSize));
@@ -57,14 +56,11 @@ class Blocks {
   }
 
  private:
-  /// A large triangle is quartered first, so that it does not fill the whole of its box.
+  /// A large triangle is halved first, so that it does not fill the whole of its box.
   void add(const TriangleCorners& x, Index triangle) {
     const Reach reach(x);
     if ((reach.max - reach.min).maxCoeff() > 2 * kBlockSize) {
-      const Vec3 ab = 0.5 * (x[0] + x[1]), bc = 0.5 * (x[1] + x[2]), ca = 0.5 * (x[2] + x[0]);
-      for (const TriangleCorners& quarter :
-           {TriangleCorners{x[0], ab, ca}, {ab, x[1], bc}, {ca, bc, x[2]}, {bc, ca, ab}})
-        add(quarter, triangle);
+      for (const TriangleCorners& half : halved(x)) add(half, triangle);
       return;
     }
     for (std::int32_t i = block_of(reach.min[0]); i <= block_of(reach.max[0]); ++i)

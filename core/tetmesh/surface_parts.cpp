@@ -12,22 +12,25 @@
 namespace softreel {
 namespace {
 
-/// Name of the first group that holds a vertex, "" if none does.
-std::string group_of(const SurfaceMesh& surface, Index vertex) {
-  for (const VertexGroup& group : surface.groups)
-    if (std::binary_search(group.vertices.begin(), group.vertices.end(), vertex)) return group.name;
-  return {};
+/// Per vertex the first group that holds it, -1 if none does; empty without groups.
+std::vector<Index> first_groups(const SurfaceMesh& surface) {
+  std::vector<Index> first(surface.groups.empty() ? 0 : surface.positions.size(), -1);
+  for (std::size_t g = surface.groups.size(); g-- > 0;)
+    for (const Index vertex : surface.groups[g].vertices) first[at(vertex)] = static_cast<Index>(g);
+  return first;
 }
 
+/// Volumes about each part's own middle: about another point that of an open part is another, and far from it that of a
+/// small one is round-off.
 void measure_parts(const SurfaceMesh& surface, SurfaceParts& found) {
-  const Vec3 center = used_bounds(surface).center();
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (const Index v : surface.triangles[t])
+      found.parts[at(found.triangle_parts[t])].box.add(surface.positions[at(v)]);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     SurfacePart& part = found.parts[at(found.triangle_parts[t])];
+    const Vec3 center = part.box.center();
     std::array<Vec3, 3> x;
-    for (std::size_t k = 0; k < 3; ++k) {
-      x[k] = surface.positions[at(surface.triangles[t][k])] - center;
-      part.box.add(surface.positions[at(surface.triangles[t][k])]);
-    }
+    for (std::size_t k = 0; k < 3; ++k) x[k] = surface.positions[at(surface.triangles[t][k])] - center;
     ++part.triangles;
     part.volume += x[0].cross(x[1]).dot(x[2]) / 6.0;
     part.area += 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
@@ -111,8 +114,10 @@ SurfaceParts find_parts(const SurfaceMesh& surface) {
   found.parts.resize(first_vertices.size());
   for (const Index vertex : rims) found.parts[at(number[at(sets.root(vertex))])].open = true;
   measure_parts(surface, found);
+  const std::vector<Index> groups = first_groups(surface);
   for (std::size_t p = 0; p < found.parts.size(); ++p) {
-    const std::string group = group_of(surface, first_vertices[p]);
+    const Index first = groups.empty() ? -1 : groups[at(first_vertices[p])];
+    const std::string group = first < 0 ? "" : surface.groups[at(first)].name;
     found.parts[p].name = fmt::format("part {} of {} ({}{} triangles)", p + 1, found.parts.size(),
                                       group.empty() ? "" : "group '" + group + "', ", found.parts[p].triangles);
   }

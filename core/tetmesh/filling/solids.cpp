@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/mesh/box_tree.h"
 #include "core/mesh/disjoint_sets.h"
 #include "core/tetmesh/triangle_clusters.h"
 #include "core/tetmesh/winding_number.h"
@@ -41,10 +42,6 @@ bool overlap(const Vec3& min, const Vec3& max, const Vec3& other_min, const Vec3
   return ((min.array() <= other_max.array() + reach) && (other_min.array() <= max.array() + reach)).all();
 }
 
-bool is_within(const Bounds& inner, const Bounds& outer) {
-  return ((inner.min.array() >= outer.min.array()) && (inner.max.array() <= outer.max.array())).all();
-}
-
 /// Whether any triangle of one tree crosses one of another that is moved by `shift`.
 bool any_cross(const TriangleClusters& first, const TriangleClusters& second, const Vec3& shift) {
   std::vector<std::array<Index, 2>> open{{0, 0}};
@@ -71,43 +68,11 @@ bool any_cross(const TriangleClusters& first, const TriangleClusters& second, co
   return false;
 }
 
-/// The boxes of parts in a tree, each as a triangle that spans it.
-class BoxTree {
- public:
-  explicit BoxTree(const std::vector<SurfacePart>& parts) : tree_(corners_of(parts), triangles_of(parts.size())) {}
-
-  /// Calls visit(part) for each box within `reach` of one, along every axis.
-  template <typename Visit>
-  void visit_near(const Bounds& box, double reach, const Visit& visit) const {
-    std::vector<Index> open{0};
-    while (!open.empty()) {
-      const Index n = open.back();
-      open.pop_back();
-      const TriangleClusters::Node& node = tree_.nodes()[at(n)];
-      if (!overlap(node.min, node.max, box.min, box.max, reach)) continue;
-      if (!node.is_leaf()) {
-        open.push_back(n + 1);
-        open.push_back(node.right);
-        continue;
-      }
-      for (Index i = node.begin; i < node.end; ++i) visit(tree_.order()[at(i)]);
-    }
-  }
-
- private:
-  static std::vector<Vec3> corners_of(const std::vector<SurfacePart>& parts) {
-    std::vector<Vec3> corners;
-    for (const SurfacePart& part : parts) corners.insert(corners.end(), {part.box.min, part.box.max});
-    return corners;
-  }
-  static std::vector<Triangle> triangles_of(std::size_t count) {
-    std::vector<Triangle> triangles;
-    for (Index i = 0; i < static_cast<Index>(count); ++i) triangles.push_back({2 * i, 2 * i + 1, 2 * i});
-    return triangles;
-  }
-
-  TriangleClusters tree_;
-};
+std::vector<Bounds> boxes_of(const std::vector<SurfacePart>& parts) {
+  std::vector<Bounds> boxes;
+  for (const SurfacePart& part : parts) boxes.push_back(part.box);
+  return boxes;
+}
 
 /// The parts with what is asked of them made when it is first asked.
 class Joining {
@@ -115,7 +80,7 @@ class Joining {
   Joining(const SurfaceMesh& surface, const SurfaceParts& parts)
       : surface_(surface),
         parts_(parts),
-        boxes_(parts.parts),
+        boxes_(boxes_of(parts.parts)),
         triangles_(parts.parts.size()),
         trees_(parts.parts.size()),
         windings_(parts.parts.size()),
@@ -144,15 +109,13 @@ class Joining {
   bool is_open(Index p) const { return parts_.parts[at(p)].open; }
 
   void join_near_and_crossing() {
-    double largest = 0;
-    bool any_open = false;
-    for (const SurfacePart& part : parts_.parts) {
-      largest = std::max(largest, part.box.diagonal());
-      any_open = any_open || part.open;
-    }
+    const bool any_open =
+        std::any_of(parts_.parts.begin(), parts_.parts.end(), [](const SurfacePart& part) { return part.open; });
+    // Those that may join are found from the larger one: a great hall does not make every pebble ask far.
     for (Index p = 0; p < count(); ++p)
-      boxes_.visit_near(box(p), any_open ? kOpenReach * largest : 0, [&](Index q) {
-        if (q > p && sets_.root(p) != sets_.root(q) && are_joined(p, q)) sets_.join(p, q);
+      boxes_.visit_near(box(p), any_open ? kOpenReach * box(p).diagonal() : 0, [&](Index q) {
+        if (q == p || (q < p && !is_open(p) && !is_open(q)) || sets_.root(p) == sets_.root(q)) return;
+        if (are_joined(std::min(p, q), std::max(p, q))) sets_.join(p, q);
       });
   }
 
@@ -172,7 +135,7 @@ class Joining {
     double winding = 0;
     Index innermost = -1;
     boxes_.visit_near(box(p), 0, [&](Index q) {
-      if (q == p || !is_within(box(p), box(q))) return;
+      if (q == p || !BoxTree::contains(box(q), box(p))) return;
       const double turns = turns_around(p, q);
       if (std::abs(turns) < 0.5) return;
       winding += turns;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -186,12 +187,22 @@ Filling fill_with_count(const Job& job, double wanted) {
   Filling best;
   WaitingLog best_lines;
   double best_error = 1e300;
-  constexpr int kSteps = 6;
+  std::exception_ptr refused;
+  int refusals = 0;
+  constexpr int kSteps = 6, kMostRefusals = 2;
+  constexpr double kMostOff = 0.25;
   for (int step = 0; step < kSteps; ++step) {
     WaitingLog lines;
     const Log log = lines.sink();
-    Filling filling = fill_with_edge({job.prepared, job.solids, job.params, job.name, job.threads, log, job.times},
-                                     edge, lattice_shift(std::max(0, step - 1)));
+    Filling filling;
+    try {
+      filling = fill_with_edge({job.prepared, job.solids, job.params, job.name, job.threads, log, job.times}, edge,
+                               lattice_shift(std::max(0, step - 1) + refusals));
+    } catch (const Error&) {  // a part that one lattice misses another may meet
+      if (!refused) refused = std::current_exception();
+      if (++refusals == kMostRefusals) break;
+      continue;
+    }
     const auto count = static_cast<double>(filling.tets());
     const double error = std::abs(count / wanted - 1.0);
     if (error < best_error) {
@@ -202,6 +213,7 @@ Filling fill_with_count(const Job& job, double wanted) {
     if (best_error <= kCountTolerance) break;
     edge *= std::cbrt(std::max(count, 1.0) / wanted);
   }
+  if (refused && !(best_error < kMostOff)) std::rethrow_exception(refused);  // far more than asked is no answer
   best_lines.pass_on(job.log);
   if (best.tets() > 0) warn_of_count(job, wanted, best.tets());
   return best;
@@ -238,6 +250,7 @@ Filling fill_with_grades(const Job& job) {
   const TetrahedralizeParams& params = job.params;
   if (params.edge > 0) require_size(job, params.edge);
   if (params.error > 0) require_size(job, 12 * params.error);
+  if (params.tets > 0) require_size(job, edge_for_tets(job, static_cast<double>(params.tets)));
   double area = 0;
   for (const Solid& solid : job.solids) area += solid.parts.area();
   Filling filling;
@@ -330,6 +343,11 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
   const bool embedded = params.mode == TetMode::Embedded;
   PreparedSurface prepared = prepare_surface(surface, {params.thickness, embedded}, name, log);
   const std::vector<Solid> solids = embedded ? std::vector<Solid>{} : take_solids(prepared, name, log);
+  if (!embedded && solids.empty())
+    throw input_error(fmt::format(
+        "body '{}': all of its surface is flat, and encloses no volume. Accepted: a surface that encloses a volume. "
+        "Give it a thickness, or close what is open.",
+        name));
   if (!embedded) {  // the solids have it all
     prepared.surface = {};
     std::vector<CarriedPoint>().swap(prepared.carried);

@@ -1,5 +1,6 @@
 #include "core/mesh/mesh_repair.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -134,6 +135,98 @@ TEST(RepairMesh, SaysThatAMoebiusStripHasOneSide) {
   EXPECT_EQ(repair_mesh(mesh),
             std::vector<std::string>({"1 one-sided piece(s) cannot be oriented and stay as they are"}));
   EXPECT_EQ(mesh.triangles, before);
+}
+
+/// The corners of polygon p from its first one on, and those of the fan that its triangles make.
+std::pair<std::vector<Index>, std::vector<Index>> polygon_and_fan(const SurfaceMesh& mesh, std::size_t p) {
+  const auto corner = [&](Index c) { return mesh.polygons.corner_vertices[static_cast<std::size_t>(c)]; };
+  std::vector<Index> polygon, fan;
+  for (Index c = mesh.polygons.offsets[p]; c < mesh.polygons.offsets[p + 1]; ++c) polygon.push_back(corner(c));
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.triangle_polygon[t] != static_cast<Index>(p)) continue;
+    for (const Index v : mesh.triangles[t])
+      if (std::find(fan.begin(), fan.end(), v) == fan.end()) fan.push_back(v);
+  }
+  return {polygon, fan};
+}
+
+TEST(RepairMesh, TurnsPolygonsWithTheirTriangles) {
+  const SurfaceMesh sound = unit_box();
+  SurfaceMesh inward = sound;
+  inward.polygons.corner_textures = inward.polygons.corner_vertices;
+  for (std::vector<Index>* corners : {&inward.polygons.corner_vertices, &inward.polygons.corner_textures})
+    for (std::size_t p = 0; p < inward.polygons.size(); ++p)
+      std::reverse(corners->begin() + inward.polygons.offsets[p], corners->begin() + inward.polygons.offsets[p + 1]);
+  for (Triangle& triangle : inward.triangles) std::swap(triangle[1], triangle[2]);
+  const SurfaceMesh given = inward;
+  repair_mesh(inward);
+  EXPECT_GT(volume(inward), 0);
+  EXPECT_EQ(inward.polygons.corner_textures, inward.polygons.corner_vertices) << "each corner keeps its texture";
+  for (std::size_t p = 0; p < inward.polygons.size(); ++p) {
+    const auto first = static_cast<std::size_t>(inward.polygons.offsets[p]);
+    EXPECT_EQ(inward.polygons.corner_vertices[first], given.polygons.corner_vertices[first]);
+    // As in the sound box, from another corner on.
+    auto [polygon, fan] = polygon_and_fan(inward, p);
+    auto [expected, unused] = polygon_and_fan(sound, p);
+    const auto start = std::find(expected.begin(), expected.end(), polygon.front());
+    ASSERT_NE(start, expected.end());
+    std::rotate(expected.begin(), start, expected.end());
+    EXPECT_EQ(polygon, expected) << p;
+  }
+}
+
+/// Of the square of the number of pages it would not end.
+TEST(RepairMesh, TakesABookOfAHundredThousandPages) {
+  SurfaceMesh book;
+  constexpr Index kPages = 100000;
+  for (Index page = 0; page < kPages; ++page) {
+    const double angle = 6.28 * page / kPages;
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(std::cos(angle), std::sin(angle), 0.5)})
+      book.positions.push_back(corner);
+    book.triangles.push_back({3 * page, 3 * page + 1, 3 * page + 2});
+  }
+  repair_mesh(book);
+  EXPECT_EQ(book.triangles.size(), static_cast<std::size_t>(kPages));
+}
+
+/// Likewise: the used triangle far away makes a thousandth of the size as large as all the others together.
+TEST(RepairMesh, JoinsRimsThoughAnotherTriangleIsFarAway) {
+  SurfaceMesh soup;
+  constexpr Index kSide = 200;
+  const auto add = [&](const Vec3& p, double size) {
+    const auto first = static_cast<Index>(soup.positions.size());
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0)}) soup.positions.push_back(p + corner);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  };
+  for (Index i = 0; i < kSide; ++i)
+    for (Index j = 0; j < kSide; ++j) add(Vec3(i, j, 0) * 0.01, 0.007);
+  const auto near = static_cast<Index>(soup.positions.size());
+  add(Vec3(1e-4, 0, 0), -0.007);  // its first corner is to join that of the first triangle
+  add(Vec3(1e6, 0, 0), 1);
+  repair_mesh(soup);
+  ASSERT_EQ(soup.joined.size(), soup.positions.size());
+  EXPECT_EQ(soup.joined[static_cast<std::size_t>(near)], 0);
+  for (std::size_t v = 1; v < static_cast<std::size_t>(near); ++v)
+    ASSERT_EQ(soup.joined[v], static_cast<Index>(v)) << "their distance is more than a quarter of their edges";
+}
+
+/// Shells in no order, each of its own: of the square of their number it would not end.
+TEST(RepairMesh, TellsTheNestingOfAHundredThousandShells) {
+  SurfaceMesh mesh = test::make_sphere(1000, 8, Vec3::Zero());
+  const std::size_t ball = mesh.triangles.size();
+  constexpr Index kSide = 46;
+  for (Index k = 0; k < kSide * kSide * kSide; ++k) {
+    const Vec3 p = 10 * Vec3(k % kSide - kSide / 2, k / kSide % kSide - kSide / 2, k / kSide / kSide - kSide / 2);
+    const auto first = static_cast<Index>(mesh.positions.size());
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+      mesh.positions.push_back(p + corner);
+    for (const Triangle& t : {Triangle{0, 1, 2}, Triangle{0, 3, 1}, Triangle{0, 2, 3}, Triangle{1, 3, 2}})
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  const std::vector<Triangle> given = mesh.triangles;
+  EXPECT_TRUE(repair_mesh(mesh).empty()) << "inward in a ball: bubbles";
+  EXPECT_EQ(mesh.triangles, given);
+  EXPECT_GT(mesh.triangles.size(), ball + 380000);
 }
 
 /// A unit ball of 4,800 triangles and small tetrahedra all over its box, each turned inward: bubbles in the ball, or

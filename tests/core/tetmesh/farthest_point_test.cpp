@@ -80,6 +80,16 @@ TEST(FarthestDistance, IsAsFarAsDenseSamplesAndNoFarther) {
   }
 }
 
+/// Of the square of its length over its mean edge it would not end.
+TEST(FarthestDistance, OfANeedleIsThatOfItsTip) {
+  const SurfaceMesh ball = test::make_sphere(1, 12, Vec3::Zero());
+  const TriangleTree tree(ball.positions, ball.triangles);
+  SurfaceMesh needle;
+  needle.positions = {Vec3(2, 0, 0), Vec3(1e4, 0, 0), Vec3(2, 1e-3, 0)};
+  needle.triangles = {{0, 1, 2}};
+  EXPECT_NEAR(farthest_distance(needle.positions, needle.triangles, tree, Threads(1)), 1e4 - 1, 0.01 * 1e4);
+}
+
 TEST(FarthestDistance, GivesEqualBitsAtOneAndFourThreads) {
   const SurfaceMesh a = test::make_torus(1, 0.4, 40, 20, Vec3::Zero()), b = test::make_sphere(1, 9, Vec3::Zero());
   EXPECT_EQ(from_to(a, b, 1), from_to(a, b, 4));

@@ -1,11 +1,13 @@
 #include "core/tetmesh/filling/tetrahedralize.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/tetmesh/surface_parts.h"
 #include "tests/support/surfaces.h"
 #include "tests/support/tet_checks.h"
 #include "tests/support/tiny_mesh_reader.h"
@@ -116,6 +118,59 @@ TEST_F(Tetrahedralize, IgnoresAFarUnusedVertex) {
   const TetMesh expected = fill(surface, {0.2, 0});
   surface.positions.emplace_back(1e7, 0, 0);
   EXPECT_EQ(fill(surface, {0.2, 0}).nodes, expected.nodes);
+}
+
+/// A closed needle of a length that its quarters would be counted by the square of.
+TEST_F(Tetrahedralize, FillsABodyBesideALongNeedle) {
+  SurfaceMesh surface = test::make_sphere(1, 12, Vec3::Zero());
+  const auto first = static_cast<Index>(surface.positions.size());
+  for (const Vec3& corner : {Vec3(0, 3, 0), Vec3(2000, 3, 0), Vec3(0, 3.01, 0), Vec3(0, 3, 0.01)})
+    surface.positions.push_back(corner);
+  for (const Triangle& t : {Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{1, 2, 3}})
+    surface.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  const TetMesh mesh = fill(surface, {.edge = 0.25, .mode = TetMode::Embedded});
+  EXPECT_EQ(count_pieces(mesh), 2);
+}
+
+TEST_F(Tetrahedralize, SaysOfAFilmThatAllOfItIsFlat) {
+  const SurfaceMesh film = test::make_box(Vec3(0.5, 0.5, 2e-7), 4, Vec3::Zero());
+  for (const TetrahedralizeParams& params : {TetrahedralizeParams{.tets = 20000},
+                                             {.edge = 0.1},
+                                             {.edge = 0.1, .graded = true},
+                                             {.tets = 5000, .graded = true}})
+    try {
+      fill(film, params);
+      ADD_FAILURE() << "filled";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("all of its surface is flat"), std::string::npos) << error.what();
+    }
+}
+
+TEST_F(Tetrahedralize, NamesTheEdgeThatWasGivenWhereAGradedPartIsTooThin) {
+  SurfaceMesh both = test::make_sphere(0.5, 16, Vec3::Zero());
+  test::append(both, test::make_box(Vec3(0.5, 0.5, 5e-4), 4, Vec3(3, 0, 0)));
+  try {
+    fill(both, {.edge = 0.05, .graded = true});
+    ADD_FAILURE() << "filled";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("0.05 m"), std::string::npos) << error.what();
+  }
+}
+
+/// The volume of an open part is about its own middle, and a small part's is no round-off of a place far away.
+TEST(FindParts, MeasuresEachPartAboutItsOwnMiddle) {
+  SurfaceMesh bucket = test::make_box(Vec3::Constant(0.5), 4, Vec3::Zero());
+  std::erase_if(bucket.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(),
+                       [&](Index v) { return bucket.positions[static_cast<std::size_t>(v)].y() > 0.49; });
+  });
+  const double alone = find_parts(bucket).parts.front().volume;
+  SurfaceMesh both = bucket;
+  test::append(both, test::make_box(Vec3::Constant(0.005), 2, Vec3(1000, 0, 0)));
+  const SurfaceParts parts = find_parts(both);
+  ASSERT_EQ(parts.parts.size(), 2U);
+  EXPECT_NEAR(parts.parts[0].volume, alone, 1e-9);
+  EXPECT_NEAR(parts.parts[1].volume, 1e-6, 1e-12);
 }
 
 TEST_F(Tetrahedralize, MeetsTheWantedCount) {
