@@ -13,8 +13,10 @@ class ErrorDialOn : public ::testing::Test {
     const DialTurn* before = nullptr;
     for (const DialTurn& turn : study.turns) {
       const DialChoice& choice = turn.choice;
-      EXPECT_TRUE(is_within_band(turn)) << turn.asked << ": believed " << choice.believed.total() << ", true "
-                                        << turn.truth;
+      const double ratio = turn.ratio();
+      EXPECT_TRUE(ratio >= 0.5 && ratio <= 2)
+          << turn.asked << ": believed " << choice.believed.total() << ", true " << turn.truth;
+      EXPECT_NE(judge(turn, study.truth_doubt), Honesty::Outside) << turn.asked;
       EXPECT_TRUE(choice.reached) << turn.asked;
       EXPECT_LE(turn.truth, 2 * turn.asked);
       if (before != nullptr) {
@@ -38,6 +40,21 @@ TEST_F(ErrorDialOn, AFallingBarBelievesWhatIsNearlyTrue) {
 
 TEST_F(ErrorDialOn, ATwistedBarBelievesWhatIsNearlyTrue) {
   expect_honest({"twist", "", 12, 0, 20000, {0.05, 0.01}});
+}
+
+TEST(ErrorDialJudged, SaysNothingWhereTheTruthIsNotKnownWellEnough) {
+  DialTurn turn;
+  turn.truth = 0.012;
+  turn.choice.believed.mesh = 0.011;
+  EXPECT_EQ(judge(turn, 0.009), Honesty::Undecided);
+  EXPECT_EQ(judge(turn, 0.001), Honesty::Within);
+  EXPECT_EQ(judge(turn, 0.02), Honesty::Undecided) << "the truth may be zero";
+  turn.choice.believed.mesh = 0.004;
+  EXPECT_EQ(judge(turn, 0.001), Honesty::Outside);
+  EXPECT_EQ(judge(turn, 0.005), Honesty::Undecided);
+  turn.choice.believed.mesh = 0.03;
+  EXPECT_EQ(judge(turn, 0.001), Honesty::Outside);
+  EXPECT_EQ(judge(turn, 0.004), Honesty::Undecided);
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 /// The work-precision benchmark in short: orders in mesh width and time step, and answers near those of theory.
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <span>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -70,9 +73,10 @@ TEST(Precision, AgreesWithCalculixOnTheSameMeshWhereStrainsAreSmall) {
   if (!has_calculix()) GTEST_SKIP() << "ccx is not installed";
   Bar bar = make_clamped_bar(3, 4, 0.25, {1e6, 0.4, 1000, 0, 0}, Clamped::LowEnd);
   const std::vector<Index> tip = section_nodes(bar, bar.length);
-  const auto calculix_tip = [&] {
+  const auto calculix_tip = [&](CalculixStatics statics) {
     Vec3 sum = Vec3::Zero();
-    for (const Vec3& u : solve_by_calculix(bar, CalculixElement::Linear, tip).displacements) sum += u;
+    for (const Vec3& u : solve_by_calculix(bar, CalculixElement::Linear, tip, Vec3::Zero(), statics).displacements)
+      sum += u;
     return Vec3(sum / static_cast<double>(tip.size()));
   };
   // The materials differ by what is quadratic in the strain: a tenth of the load, a hundredth of the difference or so.
@@ -80,11 +84,33 @@ TEST(Precision, AgreesWithCalculixOnTheSameMeshWhereStrainsAreSmall) {
   for (const double gravity : {9.81, 0.981}) {
     bar.model.gravity = Vec3(0, -gravity, 0);
     const Vec3 ours = mean_displacement(bar, tip, find_static_answer(bar.model, uncapped_params()).positions);
-    differences.push_back((ours - calculix_tip()).norm() / ours.norm());
+    differences.push_back((ours - calculix_tip(CalculixStatics::LargeDisplacement)).norm() / ours.norm());
   }
   EXPECT_LT(differences[0], 0.02);
   EXPECT_LT(differences[1], 1e-3);
   EXPECT_LT(differences[1], 0.2 * differences[0]);
+  bar.model.gravity *= 1e-3;
+  const Vec3 large = calculix_tip(CalculixStatics::LargeDisplacement), linear = calculix_tip(CalculixStatics::Linear);
+  EXPECT_LT((large - linear).norm(), 1e-3 * linear.norm());
+}
+
+TEST(Calculix, SolvesOnceWhereAllIsLinearAndTakesTheWholeLoadAtOnceWhereItIsNot) {
+  EXPECT_EQ(calculix_step(CalculixStatics::Linear).find("NLGEOM"), std::string::npos);
+  EXPECT_NE(calculix_step(CalculixStatics::LargeDisplacement).find("NLGEOM"), std::string::npos);
+  for (const CalculixStatics statics : {CalculixStatics::Linear, CalculixStatics::LargeDisplacement})
+    EXPECT_NE(calculix_step(statics).find("*STATIC\n1., 1.\n"), std::string::npos);
+}
+
+TEST(Methods, EveryoneWhoSolvesOneSystemAStepByIterationTriesTheSameTolerances) {
+  const std::vector<double> ours = softreel_schemes().front().tolerances;
+  ASSERT_GT(ours.size(), 1U);
+  int iterative = 0;
+  for (const Method& method : rival_methods())
+    if (method.label.starts_with("CG + ")) {
+      ++iterative;
+      EXPECT_EQ(method.tolerances, ours) << method.label;
+    }
+  EXPECT_EQ(iterative, 2);
 }
 
 /// Distance of the tip from the elastica over its way.
@@ -173,6 +199,77 @@ TEST(Precision, SwingsWithTimoshenkosFrequency) {
   EXPECT_LT(fine.error, 0.05) << fine.failure;
   EXPECT_GT(fine.value, timoshenko_frequency({}));  // too stiff
   EXPECT_GT(std::log2(coarse.error / fine.error), 1.8) << coarse.failure;
+}
+
+/// Moves as a whole, up and down.
+class Swing : public Stepper {
+ public:
+  explicit Swing(std::size_t nodes) : vectors_(nodes, Vec3::Zero()) {}
+  void set(double velocity) { vectors_.assign(vectors_.size(), Vec3(0, velocity, 0)); }
+  void step(double, double) override {}
+  std::span<const Vec3> positions() const override { return vectors_; }
+  std::span<const Vec3> velocities() const override { return vectors_; }
+
+ private:
+  std::vector<Vec3> vectors_;
+};
+
+TEST(Precision, MeasuresTheFrequencyOfOnePeriodHoweverLongItLooks) {
+  constexpr double kFrequency = 0.47, kDelta = 0.01;
+  const MotionProblem problem = vibration_problem(1);
+  Swing swing(problem.model.mesh.nodes.size());
+  for (const double periods : {1.7, 3.2}) {
+    const auto observer = problem.observe();
+    for (int k = 1; kFrequency * k * kDelta < periods; ++k) {
+      const double time = k * kDelta;
+      // After its third zero, at one and a half periods, it is another motion.
+      const double late = std::max(0.0, kFrequency * time - 1.6);
+      swing.set(std::sin(2 * std::numbers::pi * (kFrequency * time + late)));
+      observer->look(time, swing);
+    }
+    EXPECT_NEAR(observer->finding().value, kFrequency, 1e-3 * kFrequency) << periods;
+  }
+}
+
+TEST(Precision, GivesNoFrequencyOfLessThanThreeZeros) {
+  const MotionProblem problem = vibration_problem(1);
+  Swing swing(problem.model.mesh.nodes.size());
+  const auto observer = problem.observe();
+  for (int k = 1; k <= 3; ++k) {
+    swing.set(k == 2 ? -1 : 1);
+    observer->look(k, swing);
+  }
+  EXPECT_FALSE(observer->finding().failure.empty());
+}
+
+TEST(Precision, TimesAShortRunThreeTimesAndALongOneOnce) {
+  std::vector<double> more{0.02, 0.5};
+  const auto again = [&more] {
+    const double seconds = more.back();
+    more.pop_back();
+    return seconds;
+  };
+  EXPECT_EQ(steady_seconds(2, again), 2);
+  EXPECT_EQ(more.size(), 2U);
+  EXPECT_EQ(steady_seconds(0.1, again), 0.1);
+  EXPECT_TRUE(more.empty());
+}
+
+TEST(Precision, LeadsAnErrorOfFirstOrderOnToNothing) {
+  const std::vector<Vec3> truth{Vec3(1, 2, 3), Vec3(-1, 0, 2)}, slope{Vec3(0.1, 0, -0.2), Vec3(0, 0.3, 0.1)};
+  const auto samples_at = [&](double edge) {
+    ShapeSamples samples;
+    samples.times = {0, 1};
+    for (const double time : samples.times) {
+      std::vector<Vec3> shape;
+      for (std::size_t i = 0; i < truth.size(); ++i) shape.emplace_back((1 + time) * truth[i] + edge * slope[i]);
+      samples.positions.push_back(shape);
+    }
+    return samples;
+  };
+  const ShapeSamples limit = led_on(samples_at(0.4), samples_at(1), 2.5);
+  EXPECT_LT(rms_distance(limit, samples_at(0)), 1e-14);
+  EXPECT_NEAR(rms_distance(limit, samples_at(1)), std::sqrt((0.05 + 0.1) / 2), 1e-12);
 }
 
 TEST(Precision, FrontKeepsWhatNoOtherPointBeats) {

@@ -1,5 +1,6 @@
 // Short versions of the torture: what must hold of the default, as assertions.
 #include <algorithm>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -20,12 +21,68 @@ TEST(Stability, TheDefaultComesBackFromEveryScramble) {
     }
 }
 
-TEST(Stability, NoMethodMakesNaNOrAReflectionOfAScramble) {
+TEST(Stability, NoMethodMakesNaNOfAScrambleOrLeavesAStepUnsolved) {
   for (const testing::Scramble& scramble : testing::scrambles())
     for (const NamedMethod& method : kMethods) {
       const ScrambledRun run = run_scramble(2, scramble, method.rotation, true, 7, 40);
-      EXPECT_TRUE(run.verdict.survived()) << scramble.name << ", " << method.name << ": " << run.verdict.failure;
+      EXPECT_TRUE(run.verdict.finite) << scramble.name << ", " << method.name;
+      EXPECT_FALSE(run.verdict.unsolved()) << scramble.name << ", " << method.name << ": " << run.verdict.failure;
+      EXPECT_GT(run.verdict.steps, 0);
     }
+}
+
+TEST(Watch, SeesNumbersThatAreNone) {
+  const Rig rig(make_cantilever_model({{2, 1, 1}}), {});
+  const SimulationState good = rig.simulator.state();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(is_finite(good));
+  SimulationState bad = good;
+  bad.positions[1].y() = none;
+  EXPECT_FALSE(is_finite(bad));
+  bad = good;
+  bad.velocities[2].z() = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(is_finite(bad));
+  bad = good;
+  bad.rotations[0].x() = none;
+  EXPECT_FALSE(is_finite(bad));
+}
+
+TEST(Watch, TellsAStepThatWasNotSolvedFromNumbersThatAreNone) {
+  Verdict verdict;
+  EXPECT_TRUE(verdict.survived());
+  EXPECT_FALSE(verdict.unsolved());
+  verdict.failure = "step 1: element 3";
+  EXPECT_TRUE(verdict.unsolved());
+  verdict.finite = false;
+  EXPECT_FALSE(verdict.unsolved());
+}
+
+TEST(Flutter, IsThatOfTheBodyWhateverTheMethodsRotationsAre) {
+  for (const RotationMethod rotation : {RotationMethod::None, RotationMethod::Consistent}) {
+    BodyModel model = make_cantilever_model({{8, 2, 2}});
+    model.gravity = Vec3(0, -9.81, 0);
+    SolverParams params;
+    params.rotation = rotation;
+    Rig rig(std::move(model), params);
+    Watch watch(rig.simulator);
+    EXPECT_GT(measure_flutter(watch, rig.simulator, 1, 1.0 / 24, 8), kFlutter);
+  }
+}
+
+TEST(AbuseInAWord, NamesTheDriftOfFreeBodies) {
+  AbuseResult result;
+  EXPECT_EQ(in_a_word(result), "calm");
+  result.verdict.angular_drift = 0.25;
+  EXPECT_EQ(in_a_word(result), "calm") << "what holds the body takes momentum";
+  result.free = true;
+  result.flutter = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(in_a_word(result), "drift 0.25");
+  result.verdict.worst_gain = 0.5;
+  EXPECT_EQ(in_a_word(result), "gain 0.5, drift 0.25");
+  result.verdict.angular_drift = 0.5 * kDrift;
+  EXPECT_EQ(in_a_word(result), "gain 0.5");
+  result.verdict.failure = "step 1: element 3";
+  EXPECT_EQ(in_a_word(result), "stopped");
 }
 
 TEST(Stability, ThePaperWithoutSafeguardLeavesScramblesBehind) {

@@ -59,6 +59,7 @@ const std::vector<Method>& methods() {
       direct("EigenLdlt", DirectSolver::EigenLdlt),
       direct("Cholmod", DirectSolver::Cholmod),
       direct("EigenCg", DirectSolver::EigenCgIncompleteCholesky),
+      direct("EigenCgJacobi", DirectSolver::EigenCgDiagonal),
       xpbd("XpbdSmallSteps", {50, 1}, 2e-3),
       xpbd("XpbdIterated", {10, 10}, 5e-3),
       {"Projective", [](BodyModel m, const Threads&) { return make_projective_dynamics(std::move(m), {60}); }, 1, 1e-3},
@@ -273,7 +274,34 @@ TEST_P(Direct, FollowsPinsThatLetGo) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Direct,
                          ::testing::Values(DirectSolver::EigenLdlt, DirectSolver::Cholmod,
-                                           DirectSolver::EigenCgIncompleteCholesky));
+                                           DirectSolver::EigenCgIncompleteCholesky, DirectSolver::EigenCgDiagonal));
+
+class DirectGradients : public ::testing::TestWithParam<DirectSolver> {};
+
+TEST_P(DirectGradients, TakeFewerIterationsFromTheLastStepsAccelerations) {
+  const BodyModel model = busy_bar();
+  SolverParams params = euler_params();
+  params.tolerance = 1e-6;
+  const auto guessed = make_direct(model, params, GetParam()),
+             plain = make_direct(model, params, GetParam(), FirstGuess::None);
+  const int steps = 48;
+  for (int k = 1; k <= steps; ++k) {
+    guessed->step(k / 4.0, kStep / 4);
+    plain->step(k / 4.0, kStep / 4);
+  }
+  EXPECT_LT(guessed->iterations(), plain->iterations());
+  EXPECT_GT(guessed->iterations(), 0);
+  EXPECT_LT(distance(guessed->positions(), plain->positions()), 1e-4 * distance(plain->positions(), model.mesh.nodes));
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, DirectGradients,
+                         ::testing::Values(DirectSolver::EigenCgIncompleteCholesky, DirectSolver::EigenCgDiagonal));
+
+TEST(DirectStepper, FactorizationsDoNotIterate) {
+  const auto stepper = make_direct(busy_bar(), euler_params(), DirectSolver::EigenLdlt);
+  stepper->step(1, kStep);
+  EXPECT_EQ(stepper->iterations(), 0);
+}
 
 TEST(DescentMemory, MapsTheLastChangeOfGradientToTheLastMove) {
   const auto random = [] { return Eigen::MatrixX3d::Random(7, 3).eval(); };

@@ -21,10 +21,6 @@ constexpr double kTruthTolerance = 1e-6;
 /// Steps of a frame of the finest mesh, and those that correct them on a coarse one.
 constexpr int kTruthSteps = 8, kFinestSteps = 32;
 constexpr std::int64_t kCoarseTets = 4000;
-/// Of bars of cubes, in the edge length. Bending and clamped edges would have more, but the pins are a shell of the
-/// surface one tetrahedron thick, within which the bar is free: of first order. Measured of the dropped bar from 8, 12
-/// and 16 cubes across 1.21, from 12, 16 and 24 1.24, from 12, 24 and 32 1.14.
-constexpr double kBarOrder = 1.2;
 
 /// a + factor (b - c), point by point.
 SampledMotion moved_on(SampledMotion a, const SampledMotion& b, const SampledMotion& c, double factor) {
@@ -99,8 +95,23 @@ Truth find_truth(OneBody& body, const DialProblem& problem) {
 
 }  // namespace
 
-bool is_within_band(const DialTurn& turn) {
-  return turn.ratio() >= 0.5 && turn.ratio() <= 2;
+Honesty judge(const DialTurn& turn, double doubt) {
+  constexpr double kFactor = 2;
+  const double believed = turn.choice.believed.total(), least = turn.truth - doubt, most = turn.truth + doubt;
+  if (believed >= most / kFactor && believed <= kFactor * least) return Honesty::Within;
+  return believed < least / kFactor || believed > kFactor * most ? Honesty::Outside : Honesty::Undecided;
+}
+
+const char* name_of(Honesty honesty) {
+  switch (honesty) {
+    case Honesty::Within:
+      return "yes";
+    case Honesty::Outside:
+      return "no";
+    case Honesty::Undecided:
+      break;
+  }
+  return "undecided";
 }
 
 DialStudy study_dial(const DialProblem& problem) {

@@ -30,8 +30,20 @@ struct DialTurn {
   double ratio() const { return choice.believed.total() / truth; }
 };
 
-/// Believed within a factor of two of what is true.
-bool is_within_band(const DialTurn& turn);
+/// Whether the belief is within a factor of two of what is true.
+enum class Honesty {
+  Within,    ///< wherever within its doubt the truth is
+  Outside,   ///< wherever it is
+  Undecided  ///< the truth is not known well enough to say
+};
+/// doubt: of the truth, over the diagonal.
+Honesty judge(const DialTurn& turn, double doubt);
+const char* name_of(Honesty honesty);
+
+/// Order in the edge length by which the truth of a bar is led on. Bending and clamped edges would have more, but the
+/// pins are a shell of the surface one tetrahedron thick, within which the bar is free: of first order. Measured of the
+/// dropped bar from 8, 12 and 16 cubes across 1.21, from 12, 16 and 24 1.24, from 12, 24 and 32 1.14.
+inline constexpr double kBarOrder = 1.2;
 
 struct DialStudy {
   std::vector<DialTurn> turns;

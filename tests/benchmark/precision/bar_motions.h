@@ -7,8 +7,9 @@
 namespace softreel::bench {
 
 /// A cantilever 10 times as long as wide, undamped, whose weight (1e-4 of the usual) is switched on at rest: it swings
-/// about its static shape in its first mode. Value: its frequency in Hz, from the zeros of the mode's velocity over two
-/// periods; error: against Timoshenko's, so that of the mesh is in it.
+/// about its static shape in its first mode. Value: its frequency in Hz, from the first and the third zero of the
+/// mode's velocity, one period apart, however many there are; error: against Timoshenko's, so that of the mesh is in
+/// it.
 MotionProblem vibration_problem(Index across);
 
 /// The bar of the performance targets under its weight. Its clamped end falls with it from rest, is slowed down and

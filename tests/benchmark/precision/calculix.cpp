@@ -91,7 +91,7 @@ CalculixMesh mesh_for(const TetMesh& mesh, CalculixElement element) {
 }
 
 void write_input(const Bar& bar, CalculixElement element, const std::vector<Index>& watched, const Vec3& load,
-                 const std::filesystem::path& path) {
+                 CalculixStatics statics, const std::filesystem::path& path) {
   const CalculixMesh mesh = mesh_for(bar.model.mesh, element);
   std::string text = "*NODE, NSET=NALL\n";
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
@@ -111,7 +111,7 @@ void write_input(const Bar& bar, CalculixElement element, const std::vector<Inde
     if (mesh.nodes[i].x() < 1e-9 * bar.length) text += fmt::format("{}, 1, 3\n", i + 1);
   text += "*NSET, NSET=WATCHED\n";
   for (const Index node : watched) text += fmt::format("{},\n", node + 1);
-  text += "*STEP, NLGEOM, INC=1000\n*STATIC\n0.2, 1.\n";
+  text += calculix_step(statics);
   if (const double g = bar.model.gravity.norm(); g > 0)
     text += fmt::format("*DLOAD\nEALL, GRAV, {:.12g}, {:.12g}, {:.12g}, {:.12g}\n", g, bar.model.gravity.x() / g,
                         bar.model.gravity.y() / g, bar.model.gravity.z() / g);
@@ -156,6 +156,10 @@ std::string end_of(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string calculix_step(CalculixStatics statics) {
+  return statics == CalculixStatics::Linear ? "*STEP\n*STATIC\n1., 1.\n" : "*STEP, NLGEOM, INC=1000\n*STATIC\n1., 1.\n";
+}
+
 bool has_calculix() {
   static const bool found = [] {
     const Scratch scratch;
@@ -166,9 +170,9 @@ bool has_calculix() {
 }
 
 CalculixAnswer solve_by_calculix(const Bar& bar, CalculixElement element, const std::vector<Index>& watched,
-                                 const Vec3& load) {
+                                 const Vec3& load, CalculixStatics statics) {
   const Scratch scratch;
-  write_input(bar, element, watched, load, scratch.path() / "bar.inp");
+  write_input(bar, element, watched, load, statics, scratch.path() / "bar.inp");
   const double start = children_seconds();
   const bool ended = start_calculix("bar", scratch.path());
   CalculixAnswer answer;

@@ -1,6 +1,7 @@
-/// CalculiX (Debian's package calculix-ccx) as a judge: geometrically nonlinear statics of a bar by its program `ccx`.
+/// CalculiX (Debian's package calculix-ccx) as a judge: statics of a bar by its program `ccx`.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "tests/benchmark/precision/bar_models.h"
@@ -15,6 +16,11 @@ enum class CalculixElement {
   Quadratic  ///< C3D10 with nodes in the middle of the straight edges
 };
 
+enum class CalculixStatics {
+  Linear,            ///< small displacements: one solve
+  LargeDisplacement  ///< NLGEOM: the whole load at once, cut back by ccx itself where that fails
+};
+
 struct CalculixAnswer {
   double seconds = 0;               ///< processor time of the process, its input and output included
   std::vector<Vec3> displacements;  ///< of the watched nodes, m
@@ -24,6 +30,10 @@ struct CalculixAnswer {
 /// material, one for all elements, is linear in Green's strain, so it agrees with a corotated one where strains are
 /// small. Throws std::runtime_error with the end of ccx's output if it finds none.
 CalculixAnswer solve_by_calculix(const Bar& bar, CalculixElement element, const std::vector<Index>& watched,
-                                 const Vec3& load = Vec3::Zero());
+                                 const Vec3& load = Vec3::Zero(),
+                                 CalculixStatics statics = CalculixStatics::LargeDisplacement);
+
+/// The lines that open the step in ccx's input.
+std::string calculix_step(CalculixStatics statics);
 
 }  // namespace softreel::bench

@@ -18,7 +18,7 @@ BodyModel make_creature(const SurfaceMesh& surface, std::int64_t tets);
 /// Its surface's vertices, in the order of the file, when the nodes of the model's mesh are at `positions`.
 std::vector<Vec3> surface_of(const BodyModel& model, std::span<const Vec3> positions);
 
-/// Motion against that of a mesh of many tetrahedra in short steps, equilibrium against that of the same mesh. Value:
+/// Motion in short steps and equilibrium, both led on from two fine meshes by first order, are the truth. Value:
 /// how far the surface moves upward in the mean, m; error: root mean square distance of the surface's vertices, over
 /// the height.
 std::vector<ProblemResult> measure_creature(bool quick);

@@ -19,11 +19,16 @@ Method softreel_method(const std::string& label, const std::string& curve, const
   return method;
 }
 
+/// Of whoever solves one linear system a step by iteration.
+std::vector<double> one_solve_tolerances() {
+  return {1e-1, 1e-3, 1e-6};
+}
+
 Method scheme(const std::string& integrator_name, Integrator integrator, const std::string& linearize_name,
               Linearize linearize, const std::string& tuned) {
   const bool iterated = linearize == Linearize::Iterated;
   Method method = softreel_method(integrator_name + ", " + linearize_name, "softreel " + integrator_name, tuned,
-                                  iterated ? std::vector<double>{1e-3, 1e-5} : std::vector<double>{1e-1, 1e-3, 1e-6},
+                                  iterated ? std::vector<double>{1e-3, 1e-5} : one_solve_tolerances(),
                                   [=](double tolerance) { return scheme_params(integrator, linearize, tolerance); });
   method.ours = true;
   return method;
@@ -31,8 +36,8 @@ Method scheme(const std::string& integrator_name, Integrator integrator, const s
 
 /// Left out where its library is missing.
 void add_direct(std::vector<Method>& methods, DirectSolver solver, const std::string& label, const std::string& tuned,
-                double tolerance) {
-  Method method{label, label, false, tuned, {tolerance}, 1, {}};
+                std::vector<double> tolerances) {
+  Method method{label, label, false, tuned, std::move(tolerances), 1, {}};
   method.make = [solver](const BodyModel& model, double linear_tolerance, const Threads&) {
     SolverParams params = scheme_params(Integrator::Euler, Linearize::Start, 1e-3);
     if (std::isfinite(linear_tolerance)) params.tolerance = linear_tolerance;
@@ -95,13 +100,15 @@ std::vector<Method> softreel_variants() {
 std::vector<Method> rival_methods() {
   std::vector<Method> methods;
   add_direct(methods, DirectSolver::EigenLdlt, "Eigen LDLT",
-             "Euler, one solve a step as softreel's, by Eigen's simplicial LDLT; order of elimination kept", kNone);
+             "Euler, one solve a step as softreel's, by Eigen's simplicial LDLT; order of elimination kept", {kNone});
   add_direct(methods, DirectSolver::Cholmod, "CHOLMOD",
-             "the same by CHOLMOD's supernodal Cholesky; order of elimination kept", kNone);
-  add_direct(
-      methods, DirectSolver::EigenCgIncompleteCholesky, "CG + incomplete Cholesky",
-      "the same by Eigen's conjugate gradients, preconditioned by incomplete Cholesky, from the step's first velocity",
-      1e-3);
+             "the same by CHOLMOD's supernodal Cholesky; order of elimination kept", {kNone});
+  const std::string gradients =
+      "the same by Eigen's conjugate gradients, started from the accelerations of the last two steps as softreel's "
+      "solver, preconditioned by ";
+  add_direct(methods, DirectSolver::EigenCgIncompleteCholesky, "CG + incomplete Cholesky",
+             gradients + "incomplete Cholesky", one_solve_tolerances());
+  add_direct(methods, DirectSolver::EigenCgDiagonal, "CG + Jacobi", gradients + "the diagonal", one_solve_tolerances());
   Method xpbd{"XPBD",
               "XPBD",
               false,

@@ -42,6 +42,13 @@ double work_of(const MotionProblem& problem, double step) {
   return static_cast<double>(problem.model.mesh.tets.size()) * problem.seconds / step;
 }
 
+/// Of a run that is made again for its time only.
+class Blind : public Observer {
+ public:
+  void look(double, const Stepper&) override {}
+  Finding finding() const override { return {}; }
+};
+
 class Recorder : public Observer {
  public:
   Recorder(std::vector<double> times, ShapeMap map) : map_(std::move(map)) { samples_.times = std::move(times); }
@@ -110,6 +117,8 @@ WorkPoint run_motion(const MotionProblem& problem, const Method& method, double 
   const double start = process_seconds();
   try {
     point.seconds = move(problem, method, point.step, tolerance, *observer);
+    Blind blind;
+    point.seconds = steady_seconds(point.seconds, [&] { return move(problem, method, point.step, tolerance, blind); });
     const Observer::Finding finding = observer->finding();
     point.value = finding.value;
     point.error = finding.error;
@@ -149,6 +158,21 @@ ShapeSamples find_samples(const MotionProblem& problem, const Method& method, do
   if (recorder.samples().positions.size() != times.size())
     throw std::runtime_error(fmt::format("{}: the reference's steps miss the times to be compared", problem.name));
   return recorder.samples();
+}
+
+ShapeSamples led_on(const ShapeSamples& fine, const ShapeSamples& coarse, double edge_ratio) {
+  ShapeSamples limit = fine;
+  for (std::size_t t = 0; t < limit.positions.size(); ++t)
+    for (std::size_t i = 0; i < limit.positions[t].size(); ++i)
+      limit.positions[t][i] += (fine.positions[t][i] - coarse.positions[t][i]) / (edge_ratio - 1);
+  return limit;
+}
+
+double rms_distance(const ShapeSamples& a, const ShapeSamples& b) {
+  double squares = 0;
+  for (std::size_t t = 0; t < a.positions.size(); ++t)
+    squares += std::pow(rms_distance(a.positions[t], b.positions[t]), 2);
+  return std::sqrt(squares / static_cast<double>(a.positions.size()));
 }
 
 std::unique_ptr<Observer> observe_shape(ShapeSamples reference, double scale, const ShapeMap& map,

@@ -36,7 +36,7 @@ struct MotionProblem {
   std::function<std::unique_ptr<Observer>()> observe = {};
 };
 
-/// One run. tolerance: kNone for a method that has none.
+/// One run; a short one is repeated for its time (steady_seconds). tolerance: kNone for a method that has none.
 WorkPoint run_motion(const MotionProblem& problem, const Method& method, double step, double tolerance);
 
 /// Processor times to expect of runs, from those of the same method that were made: in proportion to elements and
@@ -67,6 +67,12 @@ using ShapeMap = std::function<std::vector<Vec3>(std::span<const Vec3> positions
 /// The samples of a motion that a reference method makes. Throws std::runtime_error if it fails.
 ShapeSamples find_samples(const MotionProblem& problem, const Method& method, double step, double tolerance,
                           const std::vector<double>& times, const ShapeMap& map);
+
+/// Where meshes of ever shorter edges lead by first order: the two have edges of 1 and `edge_ratio` > 1.
+ShapeSamples led_on(const ShapeSamples& fine, const ShapeSamples& coarse, double edge_ratio);
+
+/// Root mean square over points and times, m.
+double rms_distance(const ShapeSamples& a, const ShapeSamples& b);
 
 /// rest, watched: of the mapped points.
 std::unique_ptr<Observer> observe_shape(ShapeSamples reference, double scale, const ShapeMap& map,

@@ -67,7 +67,8 @@ void run_precision(const BenchOptions& options, Report& report) {
   report.say(
       "Error against processor time, from the mesh to the answer: making the solver and its factors is in it. Curves "
       "are fronts: of a method's runs over meshes, steps and tolerances those that no other of its runs beats in both. "
-      "One thread each. softreel runs with `dilatation = linear`, the material that everyone else has. Runs in motion "
+      "One thread each; a run under 0.1 s is made three times, its time the middle one. softreel runs with `dilatation "
+      "= linear`, the material that everyone else has. Runs in motion "
       "that are expected to take longer than a few seconds (with `--quick` half a second) are left out, alike for all "
       "methods; the table of costs says - where no run that was made is so right. `precision.tsv` has all runs.");
   report.add(method_table(all_methods()));

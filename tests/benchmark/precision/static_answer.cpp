@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "tests/benchmark/bench.h"
+#include "tests/benchmark/precision/work_precision.h"
 
 namespace softreel::bench {
 
@@ -26,6 +27,12 @@ StaticAnswer find_static_answer(BodyModel model, const SolverParams& params) {
   if (!report.ok()) throw std::runtime_error(fmt::format("softreel found no equilibrium: {}", report.culprit));
   answer.positions = simulator.state().positions;
   answer.elastic_energy = simulator.measure().elastic_energy;
+  return answer;
+}
+
+StaticAnswer time_static_answer(const BodyModel& model, const SolverParams& params) {
+  StaticAnswer answer = find_static_answer(model, params);
+  answer.seconds = steady_seconds(answer.seconds, [&] { return find_static_answer(model, params).seconds; });
   return answer;
 }
 

@@ -19,4 +19,7 @@ SolverParams uncapped_params();
 /// Equilibrium at frame 1 on one thread. Throws std::runtime_error if none is found.
 StaticAnswer find_static_answer(BodyModel model, const SolverParams& params);
 
+/// The same; a short run is repeated, and its time the middle one (steady_seconds).
+StaticAnswer time_static_answer(const BodyModel& model, const SolverParams& params);
+
 }  // namespace softreel::bench

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "tests/benchmark/bar_problem.h"
+
 namespace softreel::bench {
 namespace {
 
@@ -34,6 +36,14 @@ double order_of_last(std::span<const double> sizes, std::span<const double> erro
 }
 
 }  // namespace
+
+double steady_seconds(double first, const std::function<double()>& again) {
+  constexpr double kLongEnough = 0.1;
+  constexpr std::size_t kRuns = 3;
+  std::vector<double> seconds{first};
+  while (first < kLongEnough && seconds.size() < kRuns) seconds.push_back(again());
+  return benchmark_support::median(std::move(seconds));
+}
 
 std::vector<WorkPoint> pareto_front(std::vector<WorkPoint> points) {
   std::erase_if(points, [](const WorkPoint& point) { return !std::isfinite(point.error); });

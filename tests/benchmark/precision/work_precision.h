@@ -1,6 +1,7 @@
 /// Points of error against work, their fronts, their orders, and what of them the report shows.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -25,6 +26,10 @@ struct WorkPoint {
   double error = kNone;      ///< relative; kNone: the run failed
   std::string failure;       ///< why it failed
 };
+
+/// Seconds of a run that took `first`: a short one, which one look at the clock does not measure, is made again by
+/// `again` (which returns its seconds) until there are three times, of which this is the middle one.
+double steady_seconds(double first, const std::function<double()>& again);
 
 /// The points that no other point beats in both time and error, by rising time; each better than the one before by a
 /// hundredth of its error or more. Failed ones are none.

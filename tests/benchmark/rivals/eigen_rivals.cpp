@@ -40,8 +40,11 @@ class EigenCg : public Rival {
   const char* name() const override { return name_; }
   void update() override { solver_.factorize(system_.matrix); }
   int solve(double tolerance, Eigen::VectorXd& x) override {
+    return solve_from(Eigen::VectorXd::Zero(system_.load.size()), tolerance, x);
+  }
+  int solve_from(const Eigen::VectorXd& guess, double tolerance, Eigen::VectorXd& x) override {
     solver_.setTolerance(tolerance);
-    x = solver_.solve(system_.load);
+    x = solver_.solveWithGuess(system_.load, guess);
     if (solver_.info() != Eigen::Success) throw std::runtime_error(std::string(name_) + ": did not converge");
     return static_cast<int>(solver_.iterations());
   }

@@ -4,6 +4,10 @@
 
 namespace softreel::rivals {
 
+int Rival::solve_from(const Eigen::VectorXd&, double tolerance, Eigen::VectorXd& x) {
+  return solve(tolerance, x);
+}
+
 ScalarSystem make_scalar_system(const benchmark_support::LinearSystem& system, std::span<const Vec3> rest_positions) {
   ScalarSystem scalar;
   std::vector<Index> number(system.pinned.size(), -1);

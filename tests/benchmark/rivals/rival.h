@@ -34,6 +34,8 @@ class Rival {
   virtual void update() = 0;
   /// Solves to |b - A x| <= tolerance |b| from x = 0; returns the iterations, 0 for a direct solver.
   virtual int solve(double tolerance, Eigen::VectorXd& x) = 0;
+  /// The same from x = guess; a direct solver needs none.
+  virtual int solve_from(const Eigen::VectorXd& guess, double tolerance, Eigen::VectorXd& x);
 };
 
 /// All keep the system by reference. Failures throw std::runtime_error.

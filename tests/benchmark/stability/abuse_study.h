@@ -29,7 +29,11 @@ std::vector<Abuse> abuses(const TetMesh& slivers, bool quick);
 struct AbuseResult {
   Verdict verdict;
   double flutter = 0;  ///< degrees a step at the end; NaN for free bodies
+  bool free = false;   ///< its momentum counts
 };
+
+/// What to see of a run at a glance.
+std::string in_a_word(const AbuseResult& result);
 
 AbuseResult run_abuse(const Abuse& abuse, const SolverParams& params);
 

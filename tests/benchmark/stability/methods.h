@@ -47,4 +47,7 @@ inline SolverParams params_of(const Scheme& scheme) {
 /// Degrees a step from which the text calls it flutter: at 24 frames a second, some two degrees a second.
 inline constexpr double kFlutter = 0.1;
 
+/// Share of momentum, as Verdict's drifts, from which the text says that a free body lost or gained it.
+inline constexpr double kDrift = 0.01;
+
 }  // namespace softreel::bench

@@ -25,7 +25,7 @@ void throw_about(Simulator& simulator, const testing::Scramble& scramble, int se
 
 /// Runs of one method from one kind of scramble.
 struct ScrambleSums {
-  int back = 0, recovered = 0, steps = 0, broken = 0;
+  int back = 0, recovered = 0, steps = 0, not_numbers = 0, unsolved = 0;
   double worst_gain = 0, angular_drift = 0;
   long inverted = 0, wound = 0;
 
@@ -33,7 +33,8 @@ struct ScrambleSums {
     back += run.came_back ? 1 : 0;
     recovered += run.recovered ? 1 : 0;
     steps += run.came_back ? run.verdict.steps : 0;
-    broken += run.verdict.survived() ? 0 : 1;
+    not_numbers += run.verdict.finite ? 0 : 1;
+    unsolved += run.verdict.unsolved() ? 1 : 0;
     worst_gain = std::max(worst_gain, run.verdict.worst_gain);
     angular_drift = std::max(angular_drift, run.verdict.angular_drift);
     inverted += run.left.inverted;
@@ -46,7 +47,7 @@ Table scramble_table(int seeds, int most_steps) {
           fmt::format("Free bodies released from {} seeds of each scramble, {} steps of 1/24 s at most: back is within "
                       "1e-3 of the body's size of the rest shape up to a rigid motion",
                       seeds, most_steps),
-          {"start", "rotation", "recovery", "back %", "mean steps", "recovery acted", "NaN or reflections",
+          {"start", "rotation", "recovery", "back %", "mean steps", "recovery acted", "NaN", "not solved",
            "worst energy gain", "angular drift", "elements left inverted", "elements left wound"},
           {}};
 }
@@ -86,7 +87,8 @@ void study_scrambles(const BenchOptions& options, Report& report) {
         table.add(
             {scramble.name, method.name, recovery ? "on" : "off", 100.0 * sums.back / seeds,
              sums.back > 0 ? static_cast<double>(sums.steps) / sums.back : std::numeric_limits<double>::quiet_NaN(),
-             long{sums.recovered}, long{sums.broken}, sums.worst_gain, sums.angular_drift, sums.inverted, sums.wound});
+             long{sums.recovered}, long{sums.not_numbers}, long{sums.unsolved}, sums.worst_gain, sums.angular_drift,
+             sums.inverted, sums.wound});
       }
   report.add(table);
 }

@@ -14,14 +14,17 @@ namespace softreel::bench {
 struct Verdict {
   int steps = 0;             ///< that were solved
   std::string failure;       ///< of the first step that was not, or the first number that was none; empty: it survived
-  bool finite = true;        ///< every position and velocity, after every step
-  bool proper = true;        ///< every rotation a unit quaternion: neither a number that is none nor a reflection
+  bool finite = true;        ///< every position, velocity and rotation, after every step
   int gains = 0;             ///< steps that gained more than kNoise of the energy before, without work of pins
   double worst_gain = 0;     ///< of energy in such a step, over the greatest energy of the steps before
   double linear_drift = 0;   ///< greatest, over the momentum that the body's greatest kinetic energy allows
   double angular_drift = 0;  ///< the same times half the body's diagonal
   bool survived() const { return failure.empty(); }
+  bool unsolved() const { return finite && !survived(); }  ///< a step was refused, and the state is still one
 };
+
+/// True if no position, velocity or rotation has a number that is none.
+bool is_finite(const SimulationState& state);
 
 /// What rounding and the tolerance of an iteration may add to the energy.
 inline constexpr double kNoise = 1e-6;
@@ -57,7 +60,6 @@ class Watch {
   };
   Energies look(double frame) const;
   void judge(double frame, bool energy_counts);
-  void check_numbers();
 
   Simulator& simulator_;
   int stride_;
@@ -68,8 +70,9 @@ class Watch {
   Vec3 linear_ = Vec3::Zero(), angular_ = Vec3::Zero();  ///< at the start
 };
 
-/// Greatest over the elements of the mean angle by which their rotations change in a step, in degrees, over `steps`
-/// steps from now with the constraints of `frame`; 0 for a body at rest, which is not stepped.
+/// Greatest over the elements of the mean angle by which they turn in a step, in degrees, over `steps` steps from now
+/// with the constraints of `frame`; 0 for a body at rest, which is not stepped. An element's turn is that of the
+/// rotation nearest to its deformation gradient, found from positions, alike for all rotation methods.
 double measure_flutter(Watch& watch, Simulator& simulator, double frame, double seconds, int steps);
 
 Leftovers find_leftovers(const Simulator& simulator);

@@ -3,6 +3,8 @@
 // (M + h Ma + sum h (h + b) K_e + h^2 G) d = h f - (h Ma + h (h + b) K + h^2 G) v', d the change of velocity from v',
 // which is the velocity at the start or, of held nodes, that of their way; G: core/elasticity/tension.h. Held nodes are
 // taken out of the system.
+#include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -30,6 +32,8 @@ const char* name_of(DirectSolver solver) {
       return "Eigen LDLT";
     case DirectSolver::Cholmod:
       return "CHOLMOD";
+    case DirectSolver::EigenCgDiagonal:
+      return "Eigen CG with Jacobi";
     case DirectSolver::EigenCgIncompleteCholesky:
       break;
   }
@@ -42,10 +46,16 @@ std::unique_ptr<Rival> make_solver(DirectSolver solver, const ScalarSystem& syst
       return rivals::make_eigen_ldlt(system);
     case DirectSolver::Cholmod:
       return rivals::make_cholmod(system, 1);
+    case DirectSolver::EigenCgDiagonal:
+      return rivals::make_eigen_cg_diagonal(system);
     case DirectSolver::EigenCgIncompleteCholesky:
       break;
   }
   return rivals::make_eigen_cg_ic(system);
+}
+
+bool iterates(DirectSolver solver) {
+  return solver == DirectSolver::EigenCgIncompleteCholesky || solver == DirectSolver::EigenCgDiagonal;
 }
 
 AlignedVector<double> tension_limits(const RivalBody& rival, const BlockPattern& pattern) {
@@ -55,11 +65,56 @@ AlignedVector<double> tension_limits(const RivalBody& rival, const BlockPattern&
                              kExplicitShare);
 }
 
-class DirectStepper : public Stepper {
+/// What the solutions of past steps say of the next one.
+class ChangeHistory {
  public:
-  DirectStepper(BodyModel model, const SolverParams& params, DirectSolver solver)
+  /// change: of the velocities of `nodes` in a step of `seconds`; that of all other nodes is 0.
+  void remember(const std::vector<Index>& nodes, std::size_t all_nodes, const Eigen::VectorXd& change, double seconds) {
+    before_ = std::move(last_);
+    last_.assign(all_nodes, Vec3::Zero());
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      last_[static_cast<std::size_t>(nodes[k])] = change.segment<3>(3 * static_cast<Eigen::Index>(k)) / seconds;
+  }
+
+  /// The sum of multiples of the last acceleration and of its last change that is nearest to the solution in the energy
+  /// norm: never farther than zero is. Zero where nothing is known.
+  Eigen::VectorXd guess(const ScalarSystem& system) const {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(system.load.size());
+    if (last_.empty()) return sum;
+    const Eigen::VectorXd first = of_system(last_, system);
+    const Eigen::VectorXd first_product = system.matrix * first;
+    const double first_energy = first.dot(first_product);
+    if (!(first_energy > kLeastEnergy)) return sum;
+    sum = first.dot(system.load) / first_energy * first;
+    if (before_.empty()) return sum;
+    Eigen::VectorXd second = first - of_system(before_, system);
+    second -= second.dot(first_product) / first_energy * first;
+    const Eigen::VectorXd second_product = system.matrix * second;
+    const double energy = second.dot(second_product);
+    // What is left of a change along `first` is rounding and says nothing.
+    if (energy > std::max(kLeastEnergy, kRounding * first_energy)) sum += second.dot(system.load) / energy * second;
+    return sum;
+  }
+
+ private:
+  static constexpr double kLeastEnergy = std::numeric_limits<double>::min(), kRounding = 1e-24;
+
+  static Eigen::VectorXd of_system(const std::vector<Vec3>& of_nodes, const ScalarSystem& system) {
+    Eigen::VectorXd entries(system.load.size());
+    for (std::size_t k = 0; k < system.mesh_nodes.size(); ++k)
+      entries.segment<3>(3 * static_cast<Eigen::Index>(k)) = of_nodes[static_cast<std::size_t>(system.mesh_nodes[k])];
+    return entries;
+  }
+
+  std::vector<Vec3> last_, before_;  ///< accelerations per node, m/s^2; empty: no such step yet
+};
+
+class EulerStepper : public DirectStepper {
+ public:
+  EulerStepper(BodyModel model, const SolverParams& params, DirectSolver solver, FirstGuess guess)
       : params_(params),
         solver_kind_(solver),
+        guesses_(guess == FirstGuess::Extrapolated && iterates(solver)),
         rival_(std::move(model), params.dilatation),
         system_{{stiffness_pattern(rival_.model.mesh.tets, static_cast<Index>(rival_.nodes())), {}}, {}, {}},
         assembler_(rival_.model.mesh.tets, system_.matrix.pattern),
@@ -77,6 +132,7 @@ class DirectStepper : public Stepper {
     assemble(constraints, seconds);
     find_right_side(constraints, base, seconds);
     solve(constraints.pinned);
+    if (guesses_) history_.remember(scalar_.mesh_nodes, rival_.nodes(), change_, seconds);
     for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = rival_.positions[i] + seconds * base[i];
     for (std::size_t k = 0; k < scalar_.mesh_nodes.size(); ++k)
       ends[static_cast<std::size_t>(scalar_.mesh_nodes[k])] +=
@@ -87,6 +143,7 @@ class DirectStepper : public Stepper {
   }
   std::span<const Vec3> positions() const override { return rival_.positions; }
   std::span<const Vec3> velocities() const override { return rival_.velocities; }
+  long iterations() const override { return iterations_; }
 
  private:
   StepSource source(std::span<const Vec3> base, double h) const {
@@ -143,11 +200,13 @@ class DirectStepper : public Stepper {
     change_ = Eigen::VectorXd::Zero(scalar_.load.size());
     if (scalar_.mesh_nodes.empty() || scalar_.load.isZero(0)) return;
     solver_->update();
-    solver_->solve(params_.tolerance, change_);
+    iterations_ += guesses_ ? solver_->solve_from(history_.guess(scalar_), params_.tolerance, change_)
+                            : solver_->solve(params_.tolerance, change_);
   }
 
   SolverParams params_;
   DirectSolver solver_kind_;
+  bool guesses_;
   RivalBody rival_;
   benchmark_support::LinearSystem system_;
   StiffnessAssembler assembler_;
@@ -157,13 +216,16 @@ class DirectStepper : public Stepper {
   ScalarSystem scalar_;
   std::unique_ptr<Rival> solver_;
   Eigen::VectorXd change_;
+  ChangeHistory history_;
+  long iterations_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_direct(BodyModel model, const SolverParams& params, DirectSolver solver) {
+std::unique_ptr<DirectStepper> make_direct(BodyModel model, const SolverParams& params, DirectSolver solver,
+                                           FirstGuess guess) {
   if (solver == DirectSolver::Cholmod && !rivals::has_cholmod()) return nullptr;
-  return std::make_unique<DirectStepper>(std::move(model), params, solver);
+  return std::make_unique<EulerStepper>(std::move(model), params, solver, guess);
 }
 
 }  // namespace softreel::bench

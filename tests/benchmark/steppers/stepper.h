@@ -31,17 +31,27 @@ std::unique_ptr<Stepper> make_softreel(BodyModel model, const SolverParams& para
 // them are steps of implicit Euler, and lose the energy that it loses.
 
 /// How the linear system of softreel's step is solved by a rival: the same equations, other algebra.
-enum class DirectSolver { EigenLdlt, Cholmod, EigenCgIncompleteCholesky };
+enum class DirectSolver { EigenLdlt, Cholmod, EigenCgIncompleteCholesky, EigenCgDiagonal };
+/// Where its conjugate gradients start: as softreel's solver does, or from the step's first velocity.
+enum class FirstGuess { Extrapolated, None };
+
+class DirectStepper : public Stepper {
+ public:
+  virtual long iterations() const = 0;  ///< of all steps so far; 0 for factorizations
+};
+
 /// Implicit Euler with one linearisation at the step's start, whose system is assembled by softreel and solved anew
 /// each step. Null where the library is missing.
 ///
 /// Takes rotation, dilatation and, for conjugate gradients, `tolerance` from params; throws std::runtime_error for
 /// another integrator or linearisation. Full Rayleigh damping, pulls with max_force too. Tuned as users would: the
 /// pinned nodes are taken out, the order of elimination (AMD; CHOLMOD: its own choice) is found once and kept while the
-/// same nodes are held, values are copied in place, conjugate gradients start from the step's first velocity. CHOLMOD
-/// is supernodal, with the BLAS that the system links it to; that BLAS is told to use one thread, but CHOLMOD's own
-/// OpenMP loops are not: measure process_seconds().
-std::unique_ptr<Stepper> make_direct(BodyModel model, const SolverParams& params, DirectSolver solver);
+/// same nodes are held, values are copied in place; conjugate gradients start from those multiples of the last step's
+/// acceleration and of its last change that are nearest to the answer in the energy norm, which softreel's solver
+/// searches first too. CHOLMOD is supernodal, with the BLAS that the system links it to; that BLAS is told to use one
+/// thread, but CHOLMOD's own OpenMP loops are not: measure process_seconds().
+std::unique_ptr<DirectStepper> make_direct(BodyModel model, const SolverParams& params, DirectSolver solver,
+                                           FirstGuess guess = FirstGuess::Extrapolated);
 
 /// Extended position-based dynamics on tetrahedra (Macklin, Mueller, Chentanez 2016): the corotated linear energy's two
 /// constraints a tetrahedron, with compliance, in small steps (Macklin et al. 2019).
