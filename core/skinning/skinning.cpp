@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <Eigen/SVD>
+
 #include "core/base/check.h"
 
 namespace softreel {
@@ -9,11 +11,24 @@ namespace {
 
 constexpr std::int64_t kSkinningGrain = 2048;
 
+/// Of an edge: a point whose weights give another place by more than that was not embedded where it is.
+constexpr double kApart = 1e-6;
+
 /// Edge vectors of an element from its first node, as columns.
 Mat3 edges_of(const Tet& tet, const std::vector<Vec3>& x) {
   Mat3 edges;
   for (int k = 0; k < 3; ++k) edges.col(k) = x[at(tet[static_cast<std::size_t>(k) + 1])] - x[at(tet[0])];
   return edges;
+}
+
+/// The rotation of an element, proper also where it is inverted.
+Mat3 rotation_of(const Tet& tet, const TetMesh& mesh, const std::vector<Vec3>& node_positions) {
+  const Mat3 gradient = edges_of(tet, node_positions) * edges_of(tet, mesh.nodes).inverse();
+  if (!gradient.allFinite()) return Mat3::Identity();
+  const Eigen::JacobiSVD<Mat3> svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+  return u * svd.matrixV().transpose();
 }
 
 /// Elements of each node, ascending.
@@ -82,16 +97,27 @@ std::vector<Vec3> skin_positions(const std::vector<Vec3>& rest_points, const Emb
   CHECK(rest_points.size() == embedding.elements.size());
   CHECK(node_positions.size() == mesh.nodes.size());
   std::vector<Vec3> positions(rest_points.size());
-  threads.for_chunks(
-      static_cast<std::int64_t>(positions.size()), kSkinningGrain, [&](std::int64_t begin, std::int64_t end) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-          const Tet& tet = mesh.tets[at(embedding.elements[i])];
-          Vec3 displacement = Vec3::Zero();
-          for (std::size_t k = 0; k < 4; ++k)
-            displacement += embedding.weights[i][k] * (node_positions[at(tet[k])] - mesh.nodes[at(tet[k])]);
-          positions[i] = rest_points[i] + displacement;
-        }
-      });
+  threads.for_chunks(static_cast<std::int64_t>(positions.size()), kSkinningGrain,
+                     [&](std::int64_t begin, std::int64_t end) {
+                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                         const Tet& tet = mesh.tets[at(embedding.elements[i])];
+                         Vec3 displacement = Vec3::Zero(), carried = Vec3::Zero();
+                         double moved = 0;
+                         for (std::size_t k = 0; k < 4; ++k) {
+                           const Vec3 move = node_positions[at(tet[k])] - mesh.nodes[at(tet[k])];
+                           displacement += embedding.weights[i][k] * move;
+                           carried += embedding.weights[i][k] * mesh.nodes[at(tet[k])];
+                           moved = std::max(moved, move.squaredNorm());
+                         }
+                         // A point too far outside goes with the nearest one of the boundary, and stands off from there
+                         // as the element turns.
+                         const Vec3 apart = rest_points[i] - carried;
+                         const double size2 = (mesh.nodes[at(tet[1])] - mesh.nodes[at(tet[0])]).squaredNorm();
+                         if (moved > 0 && apart.squaredNorm() > kApart * kApart * size2)
+                           displacement += rotation_of(tet, mesh, node_positions) * apart - apart;
+                         positions[i] = rest_points[i] + displacement;
+                       }
+                     });
   return positions;
 }
 

@@ -34,11 +34,13 @@ float sine_of(float cosine) {
 DirectionCone DirectionCone::joined(const DirectionCone& other) const {
   if (angle < 0) return other;
   if (other.angle < 0) return *this;
-  const float between = std::acos(std::clamp(axis.dot(other.axis), -1.0f, 1.0f));
+  const Vec3f across = axis.cross(other.axis);
+  const float between = std::atan2(across.norm(), axis.dot(other.axis));  // exact for directions that are nearly one
   if (std::min(between + other.angle, kPi) <= angle) return *this;
   if (std::min(between + angle, kPi) <= other.angle) return other;
   const float half = 0.5f * (angle + between + other.angle);
-  const Vec3f across = axis.cross(other.axis);
+  if (!(across.norm() > 1e-6f) && between < 1)
+    return {axis, std::min(std::max(angle, between + other.angle) + 1e-3f, kPi)};
   if (half >= kPi || !(across.norm() > 1e-6f)) return {axis, kPi};
   // Towards the other axis, so that the cone just holds the far side of this one.
   const Vec3f sideways = across.normalized().cross(axis);

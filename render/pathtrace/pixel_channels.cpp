@@ -1,5 +1,6 @@
 #include "render/pathtrace/pixel_channels.h"
 
+#include <algorithm>
 #include <bit>
 #include <optional>
 
@@ -8,7 +9,14 @@
 namespace softreel {
 namespace {
 
-constexpr const char* kGroundName = "ground";
+/// "ground", or the first of "ground_2", ... that no body or material has: mattes of the same name are one.
+std::string ground_name(const Scene& scene, std::string MotionMesh::*name) {
+  std::string ground = "ground";
+  const auto is_taken = [&](const MotionMesh& mesh) { return mesh.*name == ground; };
+  for (int k = 2; std::any_of(scene.meshes.begin(), scene.meshes.end(), is_taken); ++k)
+    ground = "ground_" + std::to_string(k);
+  return ground;
+}
 
 /// Where a point, or a direction from anywhere if `direction`, is in the picture: pixels from the top left corner. None
 /// if it is not ahead.
@@ -41,10 +49,12 @@ ChannelLayout::ChannelLayout(const Scene& scene, const Picture& picture, Channel
       height_(height),
       camera_(camera_frame(scene.camera, width, height)),
       next_camera_(scene.next_camera ? camera_frame(*scene.next_camera, width, height) : camera_) {
+  const std::string ground = ground_name(scene, &MotionMesh::name);
+  const std::string ground_material = ground_name(scene, &MotionMesh::material);
   for (std::size_t m = 0; m < picture.meshes.size(); ++m) {
     const bool is_ground = m >= scene.meshes.size();
-    objects_.push_back(is_ground ? kGroundName : picture.meshes[m]->name);
-    materials_.push_back(is_ground ? kGroundName : picture.meshes[m]->material);
+    objects_.push_back(is_ground ? ground : picture.meshes[m]->name);
+    materials_.push_back(is_ground ? ground_material : picture.meshes[m]->material);
   }
   object_ids_ = ids_of(objects_);
   material_ids_ = ids_of(materials_);

@@ -30,7 +30,9 @@ SkinRequest moment_of(const RenderSettings& render) {
 /// The camera after a share of a turn about the vertical through its target, to its right.
 Camera turned(Camera camera, double share) {
   const auto angle = static_cast<float>(2 * std::numbers::pi * share);
-  camera.position = camera.target + Eigen::AngleAxisf(angle, Vec3f::UnitY()) * (camera.position - camera.target);
+  const Eigen::AngleAxisf turn(angle, Vec3f::UnitY());
+  camera.position = camera.target + turn * (camera.position - camera.target);
+  camera.up = turn * camera.up;  // one that looks straight down turns about its view
   return camera;
 }
 
@@ -76,8 +78,13 @@ class Turntable {
     const Shot& shot = session_.shot();
     const std::vector<File> wanted = files(picture, count, content);
     if (std::all_of(wanted.begin(), wanted.end(),
-                    [&](const File& file) { return outputs_.is_done(file.path, file.key); }))
+                    [&](const File& file) { return outputs_.is_done(file.path, file.key); })) {
+      double seconds = 0;
+      for (const File& file : wanted)
+        if (const auto entry = outputs_.entry(file.path)) seconds = std::max(seconds, entry->seconds);
+      saved_seconds_ += seconds;
       return false;
+    }
     const auto start = std::chrono::steady_clock::now();
     if (!tracer_) tracer_ = std::make_unique<PathTracer>(session_.context().threads, session_.context().times);
     const Image image = tracer_->render(scene, shot.render.params, [] { return cancellation().load(); });
@@ -89,6 +96,8 @@ class Turntable {
     }
     return true;
   }
+  /// What the pictures that were there took when they were made.
+  double saved_seconds() const { return saved_seconds_; }
 
  private:
   struct File {
@@ -122,6 +131,7 @@ class Turntable {
   Session& session_;
   const SceneStage& scenes_;
   Outputs& outputs_;
+  double saved_seconds_ = 0;
   std::unique_ptr<PathTracer> tracer_;  ///< made when the first picture has to be traced
 };
 
@@ -159,6 +169,7 @@ int run_turntable(const ShotOptions& options, int count) {
   RunReport report = session.report("turntable", run);
   report.pictures.traced = traced;
   report.pictures.kept = count - traced;
+  report.pictures.saved_seconds = turntable.saved_seconds();
   for (const auto& [extension, wanted] : {std::pair("png", shot.output.png), std::pair("exr", shot.output.exr)})
     if (wanted) report.made.push_back(outputs.frame_path(1, extension) + " .. " + outputs.frame_path(count, extension));
   if (shot.output.movie && shot.output.png && count > 1)

@@ -137,7 +137,7 @@ std::string ExportSeries::path(int sample) const {
 }
 
 StageKey ExportSeries::sample_key(int sample) const {
-  KeyHasher key("export 3");
+  KeyHasher key("export 4");
   key.add(format_.name).add(format_.version).add(settings_.space).add(settings_.meters_per_unit).add(settings_.up);
   key.add(settings_.normals).add(format_.has_seconds ? settings_.fps : 0.0).add(times_.frame(sample));
   const SimulatedFrame simulated = simulated_frame(frames_, times_.per_frame, sample);

@@ -122,7 +122,7 @@ class GlbFile : public ExportWriter {
     header["materials"] = Json::array({material()});
     header["animations"] = Json::array({std::move(animation)});
     buffer_.describe(header);
-    write_chunks(header.dump());
+    write_chunks(header.dump(-1, ' ', false, Json::error_handler_t::replace));  // names of files may be of any bytes
   }
 
  private:

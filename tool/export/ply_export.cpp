@@ -59,7 +59,7 @@ class PlyEncoder {
 
   void write_header() {
     std::string header = fmt::format(
-        "ply\nformat binary_little_endian 1.0\ncomment positions in the file's own unit and vertex order\n"
+        "ply\nformat binary_little_endian 1.0\ncomment vertices in the order of the mesh file\n"
         "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n",
         positions_.size());
     if (!normals_.empty()) header += "property double nx\nproperty double ny\nproperty double nz\n";
@@ -153,7 +153,7 @@ ExportFormat ply_format() {
   ExportFormat format;
   format.name = "ply";
   format.about = "binary PLY, a file a frame, with polygons, texture coordinates and groups; exact";
-  format.version = 3;
+  format.version = 4;
   format.has_normals = true;
   format.make = whole_file_writer(encode_ply);
   return format;

@@ -9,12 +9,15 @@
 namespace softreel {
 namespace {
 
-/// Text that troff prints as it is: backslashes, hyphens and quotes keep their shape for copying, and no line begins
-/// with a request.
+/// Text that troff prints as it is: backslashes, hyphens and quotes keep their shape for copying, lines stay lines, and
+/// none begins with a request.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '\\') {
+    if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n')) out += "\\&";
+    if (c == '\n') {
+      out += "\n.br\n";
+    } else if (c == '\\') {
       out += "\\e";
     } else if (c == '-') {
       out += "\\-";
@@ -30,7 +33,6 @@ std::string escaped(const std::string& text) {
       out += c;
     }
   }
-  if (!out.empty() && (out.front() == '.' || out.front() == '\'')) out.insert(0, "\\&");
   return out;
 }
 

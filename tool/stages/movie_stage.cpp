@@ -29,18 +29,68 @@ std::string frame_list(int first, int last, const Outputs& outputs) {
   return list;
 }
 
+bool has_alpha(const Shot& shot) {
+  return shot.ground && shot.ground->shadow_catcher;
+}
+
+/// What pictures go through: caught shadows over the grey of over_grey, as the encoder would drop what is transparent
+/// and show the rest in full; even sizes, which H.264 wants; BT.709, which players take HD for, told or not; yuv420p,
+/// which every player reads.
+std::string filters(const Shot& shot) {
+  const std::string over_grey =
+      "format=rgba,split[grey][picture];[grey]lutrgb=r=128:g=128:b=128:a=255[below];[below][picture]overlay=format="
+      "gbrp,";
+  return (has_alpha(shot) ? over_grey : "") +
+         "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
+}
+
 std::vector<std::string> ffmpeg_command(const Shot& shot, int frames, const std::string& list,
                                         const std::string& target) {
-  return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-y", "-r", fmt::format("{}", shot.settings.fps), "-f",
-          "concat", "-safe", "0", "-i", list, "-frames:v", std::to_string(frames),
-          // H.264 wants even sizes; yuv420p is what every player reads.
-          "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p", "-c:v", "libx264", "-crf", "16", "-preset", "medium",
-          "-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart", "-f", "mp4", target};
+  return {"ffmpeg",
+          "-hide_banner",
+          "-loglevel",
+          "error",
+          "-y",
+          "-r",
+          fmt::format("{}", shot.settings.fps),
+          "-f",
+          "concat",
+          "-safe",
+          "0",
+          "-i",
+          list,
+          "-frames:v",
+          std::to_string(frames),
+          "-vf",
+          filters(shot),
+          "-colorspace",
+          "bt709",
+          "-color_primaries",
+          "bt709",
+          "-color_trc",
+          "bt709",
+          "-color_range",
+          "tv",
+          "-c:v",
+          "libx264",
+          "-crf",
+          "16",
+          "-preset",
+          "medium",
+          "-fflags",
+          "+bitexact",
+          "-flags:v",
+          "+bitexact",
+          "-movflags",
+          "+faststart",
+          "-f",
+          "mp4",
+          target};
 }
 
 StageKey movie_key(const Shot& shot, int first, int last, const Outputs& outputs) {
-  KeyHasher key("movie 2");
-  key.add(shot.settings.fps);
+  KeyHasher key("movie 3");
+  key.add(shot.settings.fps).add(has_alpha(shot));
   for (int frame = first; frame <= last; ++frame) {
     const auto entry = outputs.entry(outputs.frame_path(frame, "png"));
     key.add(entry ? entry->checksum : "");

@@ -88,7 +88,7 @@ const FilledBody* ShotRun::filled(std::size_t body) const {
 }
 
 StageKey ShotRun::surfaces_key(int frame, const SkinRequest& request) const {
-  KeyHasher key("surfaces 1");
+  KeyHasher key("surfaces 2");
   const bool blurred = request.shutter > 0;
   key.add(request.normals).add(request.shutter).add(blurred ? request.segments : 0);
   if (request.heat != HeatQuantity::None) key.add("heat 1").add(request.heat);

@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "core/tetmesh/boundary_mending.h"
@@ -51,6 +52,23 @@ Mat3 shear() {
   Mat3 A;
   A << 1.2, 0.4, 0.1, -0.2, 0.9, 0.3, 0.0, 0.25, 1.1;
   return A;
+}
+
+TEST(SkinPositions, CarryWhatIsFarOutsideAlongWithARigidTurn) {
+  TetMesh mesh;
+  mesh.nodes = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+  mesh.tets = {{0, 1, 2, 3}};
+  const std::vector<Vec3> points{Vec3(0.2, 0.2, 0.2), Vec3(1.2, 0.1, 0.1), Vec3(6, 0.1, 0.2), Vec3(-3, -4, -5)};
+  const std::vector<Vec3> normals(points.size(), Vec3::UnitX());
+  const Embedding embedding = embed_points(points, normals, mesh, Threads(1));
+  EXPECT_EQ(skin_positions(points, embedding, mesh, mesh.nodes, Threads(1)), points);
+  const Eigen::AngleAxisd turn(1.7, Vec3(1, 2, 3).normalized());
+  const Vec3 shift(5, -2, 1);
+  std::vector<Vec3> turned;
+  for (const Vec3& node : mesh.nodes) turned.push_back(turn * node + shift);
+  const std::vector<Vec3> carried = skin_positions(points, embedding, mesh, turned, Threads(1));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_LT((carried[i] - (turn * points[i] + shift)).norm(), 1e-13) << i;
 }
 
 TEST(EmbedPoints, WeightsReproduceThePoints) {

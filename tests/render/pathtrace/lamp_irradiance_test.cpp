@@ -198,6 +198,19 @@ TEST(LightTree, ProbabilitiesAreThoseOfItsChoicesAndAddUpToOne) {
   EXPECT_GT(sum, 0.8) << "few dead ends";
 }
 
+/// A float's acos of a direction's product with itself is not 0.
+TEST(DirectionCone, OfEqualDirectionsStaysNarrow) {
+  const Sampler sampler(5, 5, 6);
+  for (std::uint32_t s = 0; s < 1000; ++s) {
+    const SampleBlock u = sampler.numbers(s, 0);
+    const Vec3f n = uniform_cone(Vec2f(u[0], u[1]), 2);
+    const DirectionCone both = DirectionCone{n, 0}.joined({(n + Vec3f::Constant(1e-7f)).normalized(), 0});
+    EXPECT_LT(both.angle, 0.01f) << s;
+    EXPECT_GT(both.axis.dot(n), 0.999f);
+  }
+  EXPECT_GT((DirectionCone{Vec3f::UnitX(), 0}.joined({-Vec3f::UnitX(), 0}).angle), 1.5f);
+}
+
 TEST(DirectionCone, HoldsBothOfTheConesThatItJoins) {
   const Sampler sampler(5, 5, 5);
   for (std::uint32_t s = 0; s < 500; ++s) {

@@ -170,6 +170,19 @@ TEST(IdChannels, TheGroundIsAnObjectOfThatName) {
   EXPECT_EQ(coverage(image, "CryptoObject", "ground", 20, 20), 1);
 }
 
+TEST(IdChannels, TellTheGroundFromABodyOfThatName) {
+  Scene scene = scene_from_above();
+  scene.ground.emplace();
+  scene.meshes = {square(0.25f, 0.1f, matte(0.5f))};
+  scene.meshes[0].name = scene.meshes[0].material = "ground";
+  const Image image = rendered(scene, with({PictureChannel::ObjectId, PictureChannel::MaterialId}));
+  for (const char* plane : {"CryptoObject", "CryptoMaterial"}) {
+    EXPECT_EQ(coverage(image, plane, "ground", 20, 20), 1);
+    EXPECT_EQ(coverage(image, plane, "ground", 2, 2), 0);
+    EXPECT_EQ(coverage(image, plane, "ground_2", 2, 2), 1);
+  }
+}
+
 TEST(Channels, DoNotTouchTheColour) {
   Scene scene = scene_from_above();
   scene.meshes = {sphere(Vec3f(0, 0.3f, 0), 0.5f, matte(0.5f))};

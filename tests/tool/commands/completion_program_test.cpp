@@ -150,6 +150,8 @@ TEST(CommandTable, SaysOfEveryCommandAndOptionWhatItIsFor) {
 TEST(ManualPage, NamesEveryCommandOptionAndExitStatusWithoutAWarning) {
   const std::string folder = new_folder("man");
   ASSERT_EQ(run(fmt::format("softreel man > {}/softreel.1", folder)).status, 0);
+  const std::string source = read_text(folder + "/softreel.1");
+  EXPECT_NE(source.find("\n.br\nply: "), std::string::npos) << "each format on a line of its own";
   if (!is_installed("groff")) GTEST_SKIP() << "groff is not installed";
   const Outcome page = run(fmt::format("groff -ww -man -Tascii -P-c -P-b -P-u -rLL=200n {}/softreel.1", folder));
   EXPECT_EQ(page.status, 0);

@@ -227,6 +227,32 @@ TEST(Turntable, TurnsTheCameraOnceRoundTheBody) {
   EXPECT_EQ(json::parse(turn().out)["pictures"]["traced"], 0);
 }
 
+TEST(Turntable, OfACameraThatLooksStraightDownTurnsThePicture) {
+  const std::string folder = shot_folder("turn_down");
+  const std::string lamp =
+      "--set camera.elevation_deg=90 --set environment.zenith=[0,0,0] --set environment.horizon=[0,0,0] "
+      "--set environment.nadir=[0,0,0] --set 'light=[{type=\"area\",center=[4,0.5,0],aim=[0,0.5,0],"
+      "size=[2,2],color=[1,0,0],power=900,visible=false}]'";
+  const std::string command = fmt::format(
+      "softreel render {0}/shot.toml --turntable 4 --frames 3 --output {0}/out --json --quiet {1}", folder, lamp);
+  const Outcome first = run(command);
+  ASSERT_EQ(first.status, 0) << first.err;
+  // Red of the left half and of the right one: the lamp is to the right at first, and to the left after half a turn.
+  const auto red = [&](int picture) {
+    const DisplayImage image = read_png(fmt::format("{}/out/ball.turntable.{:04}.png", folder, picture));
+    std::array<double, 2> halves{};
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        halves[x < image.width / 2 ? 0 : 1] += image.pixels[3 * static_cast<std::size_t>(y * image.width + x)];
+    return halves;
+  };
+  EXPECT_GT(red(1)[1], 1.2 * red(1)[0]);
+  EXPECT_GT(red(3)[0], 1.2 * red(3)[1]);
+  const json again = json::parse(run(command).out);
+  EXPECT_EQ(again["pictures"]["kept"], 4);
+  EXPECT_GT(again["pictures"]["saved_seconds"], 0.0);
+}
+
 TEST(Turntable, LeavesNothingOfALongerTurnBesideAShorterOne) {
   const std::string folder = shot_folder("turns");
   const auto turn = [&](const std::string& options) {
@@ -246,6 +272,53 @@ TEST(Turntable, LeavesNothingOfALongerTurnBesideAShorterOne) {
   turn("--turntable 2 --set environment.zenith=[0.9,0.2,0.1]");
   EXPECT_EQ(pictures(), (std::set<std::string>{"ball.turntable.0001.png", "ball.turntable.0002.png"}));
   EXPECT_TRUE(exists(folder + "/out/ball.turntable.mp4"));
+}
+
+/// The bytes of a movie's first frame, with the matrix of BT.709, as players take HD for whatever it says.
+std::vector<int> first_frame(const std::string& movie) {
+  const Outcome decoded = run(fmt::format(
+      "ffmpeg -loglevel error -y -i {0} -frames:v 1 -vf scale=in_color_matrix=bt709,format=rgb24 -f rawvideo {0}.raw",
+      movie));
+  EXPECT_EQ(decoded.status, 0) << decoded.err;
+  std::vector<int> bytes;
+  for (const char c : read_text(movie + ".raw")) bytes.push_back(static_cast<unsigned char>(c));
+  return bytes;
+}
+
+TEST(Movie, HasTheColoursOfItsPicturesAndSaysHowTheyAreCoded) {
+  const std::string folder = shot_folder("movie_colours");
+  const Outcome made = run(
+      fmt::format("softreel render {0}/shot.toml --frames 1-4 --output {0}/out --quiet --set output.movie=true --set "
+                  "environment.zenith=[0.9,0.02,0.01] --set environment.horizon=[0.9,0.02,0.01]",
+                  folder));
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Outcome said = run(fmt::format(
+      "ffprobe -v error -select_streams v -show_entries stream=color_range,color_space -of csv=p=0 {}/out/ball.mp4",
+      folder));
+  EXPECT_EQ(said.out, "tv,bt709\n");
+  const DisplayImage picture = read_png(folder + "/out/ball.0001.png");
+  const std::vector<int> frame = first_frame(folder + "/out/ball.mp4");
+  ASSERT_EQ(picture.pixels.size(), frame.size());
+  std::array<double, 3> difference{};
+  for (std::size_t k = 0; k < picture.pixels.size(); ++k)
+    difference[k % 3] += 3.0 * (frame[k] - picture.pixels[k]) / static_cast<double>(frame.size());
+  for (const double of_channel : difference) EXPECT_NEAR(of_channel, 0, 2.5);
+}
+
+TEST(Movie, ShowsCaughtShadowsOverGrey) {
+  const std::string folder = shot_folder("movie_shadow");
+  const Outcome made = run(
+      fmt::format("softreel render {0}/shot.toml --frames 1-4 --output {0}/out --quiet --set output.movie=true --set "
+                  "ground.shadow_catcher=true",
+                  folder));
+  ASSERT_EQ(made.status, 0) << made.err;
+  const DisplayImage over = over_grey(read_png(folder + "/out/ball.0001.png"));
+  const std::vector<int> frame = first_frame(folder + "/out/ball.mp4");
+  ASSERT_EQ(over.pixels.size(), frame.size());
+  double difference = 0;
+  for (std::size_t k = 0; k < frame.size(); ++k)
+    difference += std::abs(frame[k] - over.pixels[k]) / static_cast<double>(frame.size());
+  EXPECT_LT(difference, 6);
 }
 
 }  // namespace

@@ -41,6 +41,15 @@ TEST(GlbExport, ShowsEachSampleAtItsTimeAndTheFilesVerticesFirst) {
   }
 }
 
+TEST(GlbExport, TakesNamesOfAnyBytes) {
+  const SurfaceMesh mesh = testing::patchwork();
+  testing::FormatRun run("glb");
+  run.add_body("cloth", mesh);
+  run.target().shot = "caf\xe9";
+  run.append(1, mesh.positions);
+  EXPECT_EQ(testing::read_glb(run.finish()).mesh_name, "cloth");
+}
+
 TEST(GlbExport, DuplicatesMoveWithTheirOriginalsAndHaveTheirOwnCoordinates) {
   const SurfaceMesh mesh = testing::patchwork();
   testing::FormatRun run("glb");
