@@ -11,8 +11,19 @@ double p_wave_modulus(const ElasticLaw& law) {
   return law.lambda + 2 * law.mu;
 }
 
+namespace {
+
+/// Nothing acts on the piece: what there is of forces is round-off, and no tolerance of itself is within reach.
+bool is_idle(const PieceBalance& piece) {
+  return std::isfinite(piece.round_off) && std::max(piece.scale, piece.residual) <= piece.round_off &&
+         std::isfinite(piece.residual);
+}
+
+}  // namespace
+
 bool balances(const StaticState& state, double tolerance, double rounding) {
   return std::all_of(state.pieces.begin(), state.pieces.end(), [&](const PieceBalance& piece) {
+    if (is_idle(piece)) return true;
     return std::isfinite(piece.residual) &&
            piece.residual <= std::max(tolerance * piece.scale, rounding * piece.round_off);
   });
@@ -20,8 +31,12 @@ bool balances(const StaticState& state, double tolerance, double rounding) {
 
 double imbalance(const StaticState& state) {
   double greatest = 0;
-  for (const PieceBalance& piece : state.pieces)
-    if (piece.scale > 0) greatest = std::max(greatest, piece.residual / piece.scale);
+  for (const PieceBalance& piece : state.pieces) {
+    if (is_idle(piece)) continue;
+    const double share = piece.residual / piece.scale;
+    if (std::isnan(share)) return share;
+    greatest = std::max(greatest, share);
+  }
   return greatest;
 }
 

@@ -73,7 +73,7 @@ std::vector<double> rigid_shifts(const Simulator::Parts& parts, std::span<const 
   std::vector<double> shifts(held.size(), 0);
   for (std::size_t i = 0; i < held.size(); ++i) {
     const std::size_t p = piece(static_cast<Index>(i));
-    if (fixed[p] == 0) shifts[i] = kRigidShift * stiffness[p] / mass[p] * parts.masses.mass[i];
+    if (fixed[p] == 0 && mass[p] > 0) shifts[i] = kRigidShift * stiffness[p] / mass[p] * parts.masses.mass[i];
   }
   return shifts;
 }

@@ -10,7 +10,7 @@
 
 namespace softreel {
 
-/// P-wave modulus, Pa: the greatest stiffness of the law.
+/// P-wave modulus, Pa: the greatest stiffness of the law where its lambda is not negative.
 double p_wave_modulus(const ElasticLaw& law);
 
 /// How the forces on one piece balance, N.
@@ -32,9 +32,10 @@ struct StaticState {
   std::vector<PieceBalance> pieces = {};
 };
 
-/// True if in each piece |forces| <= tolerance * scale; or at most `rounding` times what rounding explains.
+/// True if in each piece |forces| <= tolerance * scale, or at most `rounding` times what rounding explains (0: only
+/// pieces on which nothing acts are excused by that).
 bool balances(const StaticState& state, double tolerance, double rounding = 0);
-/// The greatest residual of a piece over its scale.
+/// The greatest residual over its scale of a piece on which anything acts; not a number if one is none.
 double imbalance(const StaticState& state);
 
 /// One search for equilibrium under fixed constraints.

@@ -1,6 +1,8 @@
 /// Boxes in a binary tree: which of many lie near one, or around it.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <queue>
 #include <utility>
 #include <vector>

@@ -30,7 +30,7 @@ std::int64_t keep_triangles(SurfaceMesh& mesh, const std::vector<char>& kept) {
   return removed;
 }
 
-/// Triangles that were turned, and turned back.
+/// Per triangle: 1 if it was turned an odd number of times.
 using Turned = std::vector<char>;
 
 void flip_triangle(SurfaceMesh& mesh, std::size_t t, Turned& turned) {
@@ -39,7 +39,8 @@ void flip_triangle(SurfaceMesh& mesh, std::size_t t, Turned& turned) {
   turned[t] = turned[t] == 0 ? 1 : 0;
 }
 
-/// Polygons go as their triangles do: they are what exports write. Their first corners stay.
+/// Polygons go as their triangles do (any of them: a polygon's are turned together), as they are what exports write.
+/// Their first corners stay; those that lost all triangles are left as they are.
 void turn_polygons(SurfaceMesh& mesh, const Turned& turned) {
   PolygonList& polygons = mesh.polygons;
   if (polygons.size() == 0) return;  // a surface that was made of triangles

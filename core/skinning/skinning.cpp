@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 
 #include "core/base/check.h"

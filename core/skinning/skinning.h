@@ -12,7 +12,8 @@ namespace softreel {
 
 /// Deformed positions of the points: rest point + weighted displacement of the element's nodes, so that the rest pose
 /// is reproduced exactly. A point that its weights do not give, as it is too far outside, keeps its offset from the
-/// point that they give, turned with the element. node_positions: deformed, as mesh.nodes.
+/// point that they give, turned with the element; pins and pulls on it do not know of that. node_positions: deformed,
+/// as mesh.nodes.
 std::vector<Vec3> skin_positions(const std::vector<Vec3>& rest_points, const Embedding& embedding, const TetMesh& mesh,
                                  const std::vector<Vec3>& node_positions, const Threads& threads);
 

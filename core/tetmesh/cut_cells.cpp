@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "core/mesh/mesh_topology.h"
 #include "core/tetmesh/triangle_halves.h"
@@ -24,7 +25,7 @@ void join_edge(LatticeSurface& surface, const std::vector<Triangle>& welded, std
                Index& joints) {
   const bool rim = !is_balanced(edge);
   const bool plain = edge.size() == 2 && !rim;
-  std::map<std::pair<Index, Index>, Index> ends;  // in the order they come up
+  std::map<std::pair<Index, Index>, Index> ends;  // numbered in the order they come up
   const Index first = joints;
   for (const HalfEdge& half : edge) {
     const std::size_t k = side_of(welded[at(half.triangle)], half);

@@ -10,6 +10,7 @@
 #include "core/tetmesh/gap_refinement.h"
 #include "core/tetmesh/graded_octree.h"
 #include "core/tetmesh/graded_stuffing.h"
+#include "core/tetmesh/lattice_nodes.h"
 
 namespace softreel {
 namespace {
@@ -109,7 +110,7 @@ int halvings(const ErrorBudgetParams& params, const Bounds& box, double base_edg
 /// they, not the body, would take the memory. Only far inside of a body could cells be that large.
 int top_level(const Bounds& box, const LatticeFrame& frame, int wanted) {
   constexpr double kMostCells = 1 << 20;
-  constexpr int kHighest = 15;  // four such cells are half of the coordinates
+  constexpr int kHighest = 15;  // four such cells are a quarter of the coordinates to one side
   int top = wanted;
   const auto cells = [&] { return (box.size() / std::ldexp(frame.spacing, top)).array().max(0.0).matrix(); };
   while (top < kHighest && (cells() + Vec3::Constant(3)).prod() > kMostCells) ++top;

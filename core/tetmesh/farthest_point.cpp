@@ -18,8 +18,8 @@ struct Probe {
   double distance = 0;
 };
 
-/// Square of the shortest side over the longest: below, quarters come as thin as the triangle is.
-constexpr double kNeedle = 0.1 * 0.1;
+/// Square of the height over the longest side: below, quarters come as thin as the triangle is.
+constexpr double kThin = 0.1 * 0.1;
 
 class Search {
  public:
@@ -61,32 +61,28 @@ class Search {
   }
 
  private:
-  /// Into quarters; a needle, of which they would be as long and half as wide, into halves of its length.
+  /// Into quarters; where those would be as thin as it is, into halves of its longest side.
   template <typename Take>
   void divide(const Probe& a, const Probe& b, const Probe& c, const Take& take) const {
-    const double ab2 = (a.point - b.point).squaredNorm(), bc2 = (b.point - c.point).squaredNorm(),
-                 ca2 = (c.point - a.point).squaredNorm();
-    const double longest = std::max({ab2, bc2, ca2});
-    if (std::min({ab2, bc2, ca2}) < kNeedle * longest) {
-      const Probe &p = longest == ab2   ? a
-                       : longest == bc2 ? b
-                                        : c,
-                  &q = longest == ab2   ? b
-                       : longest == bc2 ? c
-                                        : a,
-                  &r = longest == ab2   ? c
-                       : longest == bc2 ? a
-                                        : b;
-      const Probe between = middle(p, q);
-      take(p, between, r);
-      take(between, q, r);
-      return;
+    const auto length2 = [](const Probe& p, const Probe& q) { return (p.point - q.point).squaredNorm(); };
+    const double ab2 = length2(a, b), bc2 = length2(b, c), ca2 = length2(c, a);
+    const double longest2 = std::max({ab2, bc2, ca2});
+    const double height2 = (b.point - a.point).cross(c.point - a.point).squaredNorm() / longest2;
+    if (height2 < kThin * longest2) {
+      if (longest2 == ab2) return halve(a, b, c, take);
+      return longest2 == bc2 ? halve(b, c, a, take) : halve(c, a, b, take);
     }
     const Probe ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
     take(a, ab, ca);
     take(ab, b, bc);
     take(ca, bc, c);
     take(ab, bc, ca);
+  }
+  template <typename Take>
+  void halve(const Probe& a, const Probe& b, const Probe& c, const Take& take) const {
+    const Probe between = middle(a, b);
+    take(a, between, c);
+    take(between, b, c);
   }
 
   Probe middle(const Probe& a, const Probe& b) const { return probe(tree_, 0.5 * (a.point + b.point), a.leaf_place); }

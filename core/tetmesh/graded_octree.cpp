@@ -80,11 +80,10 @@ GradedOctree::GradedOctree(const LatticeFrame& frame, const Bounds& box, std::in
   const Vec3 min = in_units(box.min) / width, max = in_units(box.max) / width;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<int>(k);
-    const auto first = static_cast<std::int32_t>(std::floor(min[axis])) - 1;
-    low_[k] = first * width;
-    counts_[k] = static_cast<std::int32_t>(std::floor(max[axis])) + 2 - first;
-    const std::int64_t high = low_[k] + std::int64_t{counts_[k]} * width;
-    CHECK(std::max(-std::int64_t{low_[k]}, high) <= kMaxLatticeCoordinate);
+    const double first = std::floor(min[axis]) - 1, end = std::floor(max[axis]) + 2;
+    CHECK(width * std::max(-first, end) <= kMaxLatticeCoordinate);
+    low_[k] = static_cast<std::int32_t>(first) * width;
+    counts_[k] = static_cast<std::int32_t>(end - first);
   }
   for (std::int32_t z = 0; z < counts_[2]; ++z)
     for (std::int32_t y = 0; y < counts_[1]; ++y)

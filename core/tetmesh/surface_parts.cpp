@@ -20,15 +20,20 @@ std::vector<Index> first_groups(const SurfaceMesh& surface) {
   return first;
 }
 
-/// Volumes about each part's own middle: about another point that of an open part is another, and far from it that of a
-/// small one is round-off.
+/// Volumes of closed parts about their own middle: far from it that of a small one is round-off. That of an open part
+/// is another about another point, and panels that make up a body only do so together: about the middle of all of them.
 void measure_parts(const SurfaceMesh& surface, SurfaceParts& found) {
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    for (const Index v : surface.triangles[t])
-      found.parts[at(found.triangle_parts[t])].box.add(surface.positions[at(v)]);
+  Bounds open;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     SurfacePart& part = found.parts[at(found.triangle_parts[t])];
-    const Vec3 center = part.box.center();
+    for (const Index v : surface.triangles[t]) {
+      part.box.add(surface.positions[at(v)]);
+      if (part.open) open.add(surface.positions[at(v)]);
+    }
+  }
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    SurfacePart& part = found.parts[at(found.triangle_parts[t])];
+    const Vec3 center = part.open ? open.center() : part.box.center();
     std::array<Vec3, 3> x;
     for (std::size_t k = 0; k < 3; ++k) x[k] = surface.positions[at(surface.triangles[t][k])] - center;
     ++part.triangles;

@@ -39,7 +39,9 @@ DirectionCone DirectionCone::joined(const DirectionCone& other) const {
   if (std::min(between + other.angle, kPi) <= angle) return *this;
   if (std::min(between + angle, kPi) <= other.angle) return other;
   const float half = 0.5f * (angle + between + other.angle);
-  if (!(across.norm() > 1e-6f) && between < 1)
+  // Directions that floats hardly tell apart have no plane to turn in; the margin below is far more than they differ
+  // by.
+  if (!(across.norm() > 1e-6f) && axis.dot(other.axis) > 0)
     return {axis, std::min(std::max(angle, between + other.angle) + 1e-3f, kPi)};
   if (half >= kPi || !(across.norm() > 1e-6f)) return {axis, kPi};
   // Towards the other axis, so that the cone just holds the far side of this one.

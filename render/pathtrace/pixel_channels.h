@@ -25,8 +25,8 @@ class ChannelLayout {
   /// depth.Z, position.X/Y/Z (m; means over the samples that hit something);
   /// motion.X, motion.Y (pixels from this frame to the next, x to the right, y down: where the surface seen here will
   /// be is at the pixel plus the vector; the surroundings move with the camera's turning only); CryptoObject00.R ...,
-  /// CryptoMaterial00.R ... (render/image/cryptomatte.h; the ground is "ground"); strain.V (mean over the samples that
-  /// hit a mesh with strain); samples.N.
+  /// CryptoMaterial00.R ... (render/image/cryptomatte.h; the ground is "ground", or "ground_2", ... beside a body or
+  /// material of that name); strain.V (mean over the samples that hit a mesh with strain); samples.N.
   void add_planes(Image& image) const;
 
  private:

@@ -251,7 +251,7 @@ TEST(Precision, TimesAShortRunThreeTimesAndALongOneOnce) {
   };
   EXPECT_EQ(steady_seconds(2, again), 2);
   EXPECT_EQ(more.size(), 2U);
-  EXPECT_EQ(steady_seconds(0.1, again), 0.1);
+  EXPECT_EQ(steady_seconds(0.05, again), 0.05);
   EXPECT_TRUE(more.empty());
 }
 

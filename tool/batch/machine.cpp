@@ -60,10 +60,10 @@ int usable_processors() {
 double available_memory() {
   std::ifstream in("/proc/meminfo");
   std::string word;
-  double kilobytes = std::numeric_limits<double>::infinity();
+  double kilobytes = 0, available = std::numeric_limits<double>::infinity();
   while (in >> word)
-    if (word == "MemAvailable:" && in >> kilobytes) break;
-  return std::min(kilobytes * 1024, left_by_control_groups("/proc/self/cgroup", "/sys/fs/cgroup"));
+    if (word == "MemAvailable:" && in >> kilobytes) available = 1024 * kilobytes;
+  return std::min(available, left_by_control_groups("/proc/self/cgroup", "/sys/fs/cgroup"));
 }
 
 std::string program_path() {

@@ -115,15 +115,22 @@ std::vector<std::string> values_of(const Range& range, const std::string& text) 
 /// text might give the same.
 std::string folder_text(const std::string& text, bool& lost) {
   constexpr std::string_view kDropped = " []{}\"'", kPlain = "._+-=";
-  // Lists and the quotes round a word say nothing that another value could not; blanks and quotes within a word do.
-  const bool is_word = text.find_first_of("[{") == std::string::npos;
+  // Blanks between the numbers of a list and the quotes round a word say nothing that another value could not; blanks
+  // within quotes or a bare word do.
+  const bool is_list = text.find_first_of("[{") != std::string::npos;
+  char quote = 0;
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const auto byte = static_cast<unsigned char>(c);
     if (kDropped.find(c) != std::string_view::npos) {
-      const bool encloses = (i == 0 || i + 1 == text.size()) && (c == '"' || c == '\'');
-      lost = lost || (is_word && !encloses);
+      const bool is_quote = c == '"' || c == '\'';
+      if (quote == 0 ? is_quote : c == quote) {
+        quote = quote == 0 ? c : 0;
+        lost = lost || (!is_list && i > 0 && i + 1 < text.size());
+      } else {
+        lost = lost || quote != 0 || !is_list;
+      }
       continue;
     }
     const bool is_plain = std::isalnum(byte) != 0 || byte >= 0x80 || kPlain.find(c) != std::string_view::npos;

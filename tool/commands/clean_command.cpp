@@ -64,7 +64,9 @@ int run_clean(const CleanOptions& options) {
     const std::vector<CacheItem> needed = Session::items(run, outputs);
     removal += clean_cache(cache, CacheUse::owner_id(shot.path, shot.output.directory), needed, dry_run);
     if (!dry_run) CacheUse(cache, shot.path, shot.output.directory).claim(needed);  // remembered
-    if (!dry_run) removal.files += sweep_temporaries(shot.output.directory);
+    const Swept swept = sweep_temporaries(shot.output.directory, dry_run);
+    removal.files += swept.files;
+    removal.bytes += swept.bytes;
   }
   if (options.shot.cache_limit_gb >= 0) removal += cut_cache(cache, options.shot.cache_limit_gb * 1e9, dry_run);
   say(removal, cache, dry_run);

@@ -270,9 +270,8 @@ int wait_for(const Shots& shots, const FarmOptions& options, Console& console) {
 void require_sense(const FarmOptions& options) {
   if (options.shot.dry_run && options.shot.json)
     throw input_error(
-        "--json: says how submitted tasks fare, and a dry run submits none.\n  Accepted without --dry-run, which "
-        "prints "
-        "the commands and scripts.");
+        "--json: says how submitted tasks fare, and a dry run submits none.\n"
+        "  Accepted without --dry-run, which prints the commands and scripts.");
   if (options.wait && options.engine == "openjd")
     throw input_error(
         "--wait: whoever runs the template of --engine openjd is not known here.\n  Accepted with --engine slurm. "

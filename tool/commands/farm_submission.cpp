@@ -1,6 +1,7 @@
 #include "tool/commands/farm_submission.h"
 
 #include <algorithm>
+#include <exception>
 #include <optional>
 
 #include <fmt/format.h>
@@ -80,11 +81,12 @@ std::vector<SubmittedTask> tasks_of(const FarmJob& job, const std::string& numbe
 std::string run_slurm(const std::vector<std::string>& command) {
   std::string said;
   const int status = run_process(command, &said);
-  if (status < 0 || status == 127)
-    throw work_error(fmt::format(
-        "{}: the program was not found: this machine has no Slurm.\n  Run softreel farm where jobs are submitted from, "
-        "or write a template for another farm with --engine openjd.",
-        command.front()));
+  if (const std::string why = why_not_started(status); !why.empty())
+    throw work_error(
+        fmt::format("{}: the program {}; this machine has no Slurm that can be asked.\n  Run softreel farm where jobs "
+                    "are submitted "
+                    "from, or write a template for another farm with --engine openjd.",
+                    command.front(), why));
   if (status != 0)
     throw work_error(
         fmt::format("{} ended with status {}: {}", command.front(), status, said.empty() ? "nothing said" : said));
@@ -187,7 +189,7 @@ void submit_to_slurm(FarmedShot& shot, const FarmPlan& plan) {
   std::vector<std::string> numbers;
   const std::optional<FarmRecord> before = shot.record();
   if (before) cancel_what_is_there(plan.replaced, before->user);
-  shot.forget(all_tasks(plan));
+  const FarmedShot::TaskTexts forgotten = shot.forget(all_tasks(plan));
   FarmRecord record = new_record(shot, plan, "slurm");
   try {
     for (std::size_t i = 0; i < plan.jobs.size(); ++i) {
@@ -199,10 +201,16 @@ void submit_to_slurm(FarmedShot& shot, const FarmPlan& plan) {
       for (SubmittedTask& task : tasks_of(job, numbers.back())) record.tasks.push_back(std::move(task));
       shot.save(record);
     }
-  } catch (const Error& refused) {
-    const std::string left = take_back(numbers);
-    shot.save(before ? without(*before, plan.replaced) : new_record(shot, plan, "slurm"));
-    throw Error(refused.kind(), refused.what() + left);
+  } catch (const std::exception& refused) {
+    std::string left = take_back(numbers);
+    try {
+      shot.save(before ? without(*before, plan.replaced) : new_record(shot, plan, "slurm"));
+      shot.remember(forgotten);
+    } catch (const std::exception& problem) {
+      left += fmt::format("\n  {}", problem.what());
+    }
+    const auto* error = dynamic_cast<const Error*>(&refused);
+    throw Error(error != nullptr ? error->kind() : ErrorKind::Work, refused.what() + left);
   }
 }
 

@@ -39,9 +39,9 @@ std::string checksum_of_program() {
   std::string said;
   // Not /proc/self/exe: of the child that would be its own file.
   const int status = run_process({"sha256sum", fmt::format("/proc/{}/exe", ::getpid())}, &said);
-  if (status < 0 || status == 127)
+  if (const std::string why = why_not_started(status); !why.empty())
     throw work_error(
-        "sha256sum: the program was not found.\n  Install the package coreutils: nodes compare their softreel.");
+        fmt::format("sha256sum: the program {}.\n  Install the package coreutils: nodes compare their softreel.", why));
   if (status != 0) throw work_error(fmt::format("sha256sum ended with status {}: {}", status, said));
   return said.substr(0, said.find(' '));
 }
@@ -238,11 +238,19 @@ void FarmedShot::save(FarmRecord record) {
   record_ = std::move(record);
 }
 
-void FarmedShot::forget(const std::vector<SubmittedTask>& tasks) const {
+FarmedShot::TaskTexts FarmedShot::forget(const std::vector<SubmittedTask>& tasks) const {
+  TaskTexts texts;
   for (const SubmittedTask& task : tasks) {
+    const std::string path = record_path(site_, task_name(task.step, task.frames));
     std::error_code none;
-    fs::remove(record_path(site_, task_name(task.step, task.frames)), none);
+    if (fs::exists(path, none)) texts[path] = text_of(path);
+    fs::remove(path, none);
   }
+  return texts;
+}
+
+void FarmedShot::remember(const TaskTexts& texts) const {
+  for (const auto& [path, text] : texts) write_file(path, text);
 }
 
 }  // namespace softreel

@@ -1,6 +1,7 @@
 /// One shot of the command farm: the shot as its nodes see it, what of it is there, and what was submitted of it.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,8 +40,12 @@ class FarmedShot {
   void make_folders() const;
   /// Writes the record, which becomes that of the last submission.
   void save(FarmRecord record);
-  /// What the tasks said of themselves is forgotten.
-  void forget(const std::vector<SubmittedTask>& tasks) const;
+  /// What tasks said of themselves, by the path of it.
+  using TaskTexts = std::map<std::string, std::string>;
+  /// That is forgotten, and returned.
+  TaskTexts forget(const std::vector<SubmittedTask>& tasks) const;
+  /// After all.
+  void remember(const TaskTexts& texts) const;
 
  private:
   /// one: what was given of the shot, with absolute paths.

@@ -4,9 +4,13 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <set>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -49,8 +53,8 @@ class Turntable {
   Turntable(Session& session, const SceneStage& scenes, Outputs& outputs)
       : session_(session), scenes_(scenes), outputs_(outputs) {}
 
-  /// Nothing of another turn or an older shot stays beside the pictures of these contents: a killed run leaves no
-  /// mixture.
+  /// No picture of another turn or an older shot stays beside those of these contents, of the kinds that are made now:
+  /// a killed run leaves no mixture.
   void remove_outdated(const std::vector<StageKey>& contents) {
     const auto count = static_cast<int>(contents.size());
     std::map<std::string, StageKey> keys;  // by path

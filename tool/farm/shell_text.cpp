@@ -1,6 +1,7 @@
 #include "tool/farm/shell_text.h"
 
 #include <algorithm>
+#include <string_view>
 
 namespace softreel {
 namespace {

@@ -70,7 +70,8 @@ void add_motion_fields(Table<S>& table) {
   table
       .add("keys_unit", &S::keys_in_box, choice<bool>({{"m", false}, {"box", true}}), "",
            "What translate and pivot of the keys count: metres, or heights and coordinates of the placed body's box.")
-      .add("active", &S::active, frame_ranges_codec(), "frames", "When it holds, both frames included.", "always")
+      .add("active", &S::active, frame_ranges_codec(), "frames",
+           "When it holds, both frames included; [[1, 10], [11, 20]] leaves no gap.", "always")
       .add("follow", &S::follow, follow_codec(), "",
            "An animated node or surface that takes the points along; instead "
            "of keys.",

@@ -171,8 +171,8 @@ void require_writable(const std::string& folder) {
   }
 }
 
-int sweep_temporaries(const std::string& folder) {
-  int swept = 0;
+Swept sweep_temporaries(const std::string& folder, bool dry_run) {
+  Swept swept;
   std::error_code problem;
   for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
     const std::string name = entry->path().filename().string();
@@ -180,7 +180,12 @@ int sweep_temporaries(const std::string& folder) {
     const int descriptor = ::open(entry->path().c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor < 0) continue;
     const bool nobody_writes = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;  // false too where there are no locks
-    if (nobody_writes && ::unlink(entry->path().c_str()) == 0) ++swept;
+    std::error_code none;
+    const auto size = entry->file_size(none);
+    if (nobody_writes && (dry_run || ::unlink(entry->path().c_str()) == 0)) {
+      ++swept.files;
+      swept.bytes += none ? 0.0 : static_cast<double>(size);
+    }
     ::close(descriptor);
   }
   return swept;

@@ -64,8 +64,13 @@ void require_writable(const std::string& folder);
 /// Whether a file of this name is one that is being written, or was: ".NAME.HOST.PID.N.part" of any host.
 bool is_temporary_name(const std::string& name);
 
+struct Swept {
+  int files = 0;
+  double bytes = 0;
+};
+
 /// Removes what killed processes left unfinished in a folder; files that are being written stay, and all where the file
-/// system has no locks that tell. Returns how many.
-int sweep_temporaries(const std::string& folder);
+/// system has no locks that tell. `dry_run`: only counts.
+Swept sweep_temporaries(const std::string& folder, bool dry_run = false);
 
 }  // namespace softreel

@@ -162,8 +162,12 @@ void remove_dead_locks(const Cache& cache) {
 /// What killed processes left: unfinished files, and locks that nobody holds.
 void remove_remains(const Cache& cache, bool dry_run, CacheRemoval& removal) {
   std::error_code none;
-  for (fs::directory_iterator entry(cache.format_folder(), none), end; !none && entry != end; entry.increment(none))
-    if (!dry_run && entry->is_directory(none)) removal.files += sweep_temporaries(entry->path().string());
+  for (fs::directory_iterator entry(cache.format_folder(), none), end; !none && entry != end; entry.increment(none)) {
+    if (!entry->is_directory(none)) continue;
+    const Swept swept = sweep_temporaries(entry->path().string(), dry_run);
+    removal.files += swept.files;
+    removal.bytes += swept.bytes;
+  }
   if (!dry_run) remove_dead_locks(cache);
 }
 

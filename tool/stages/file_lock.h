@@ -17,9 +17,6 @@ class FileLock {
   static std::optional<FileLock> try_take(const std::string& path, Sharing sharing = Sharing::Exclusive);
   /// Waits for the lock. For locks that are held for moments only.
   static FileLock take(const std::string& path, Sharing sharing = Sharing::Exclusive);
-  /// The lock on a file that is open already; nothing if another holder is in the way. Takes over the descriptor.
-  static std::optional<FileLock> try_adopt(int descriptor, Sharing sharing);
-
   FileLock(FileLock&& other) noexcept
       : descriptor_(std::exchange(other.descriptor_, -1)), removed_(std::exchange(other.removed_, {})) {}
   FileLock& operator=(FileLock&& other) noexcept {
@@ -34,6 +31,8 @@ class FileLock {
 
  private:
   explicit FileLock(int descriptor) : descriptor_(descriptor) {}
+  /// The lock on a file that is open already; nothing if another holder is in the way. Takes over the descriptor.
+  static std::optional<FileLock> try_adopt(int descriptor, Sharing sharing);
 
   int descriptor_;  ///< -1: a formality
   std::string removed_;

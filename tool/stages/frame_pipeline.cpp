@@ -1,6 +1,8 @@
 #include "tool/stages/frame_pipeline.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <set>
@@ -132,8 +134,10 @@ class Pipeline {
     if (source == PictureSource::Linked) ++counts_.linked;
     if (source == PictureSource::Traced) ++counts_.traced;
     if (source != PictureSource::Traced) counts_.saved_seconds += pictures_.seconds(frame);
-    // The frame before is needed no more, not even for motion blur; those of busy frames may have to be made yet.
-    if (busy_.empty() && frame > run_.shot().settings.first_frame)
+    // The frame before is needed no more, not even for motion blur, but for a busy one that may have to be made yet.
+    const bool is_needed =
+        std::any_of(busy_.begin(), busy_.end(), [&](int busy) { return std::abs(busy - (frame - 1)) <= 1; });
+    if (!is_needed && frame > run_.shot().settings.first_frame)
       for (std::size_t b = 0; b < run_.body_count(); ++b)
         use_.release(cache_item(kSimulationStage, run_.simulation(b).frame_key(frame - 1)));
     done_(frame, source);

@@ -1,8 +1,6 @@
 #include "tool/stages/movie_stage.h"
 
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
 #include <vector>
 
@@ -114,12 +112,12 @@ std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, 
   const int status = run_process(ffmpeg_command(shot, last - first + 1, list.temporary_path(), movie.temporary_path()),
                                  &said, &context.cancelled);
   context.stop_if_cancelled();
-  if (status < 0)
-    throw work_error(fmt::format(
-        "{}: the movie was not made: the program ffmpeg {}.\n  All frames are there. {} (only the movie will be made), "
-        "or set output.movie = false.",
-        path, status == -ENOENT ? "was not found" : fmt::format("could not be started: {}", std::strerror(-status)),
-        status == -ENOENT ? "Install the package ffmpeg and run again" : "Run again"));
+  if (const std::string why = why_not_started(status); !why.empty())
+    throw work_error(
+        fmt::format("{}: the movie was not made: the program ffmpeg {}.\n  All frames are there. Install the package "
+                    "ffmpeg, or see "
+                    "to that it can run, and run again (only the movie will be made); or set output.movie = false.",
+                    path, why));
   // ffmpeg ends with 0 even if it could not write the end of the file, but it says so.
   if (status != 0 || !said.empty())
     throw work_error(

@@ -66,8 +66,9 @@ class Outputs {
             std::span<const std::uint8_t> bytes, double seconds);
   /// Commits a file that was written elsewhere, and writes the manifest. checksum: of its bytes.
   void commit(AtomicFile& file, const StageKey& key, const StageKey& checksum, double seconds);
-  /// Removes the files, and their entries, of which `is_outdated` says so: by what the manifest says now, whatever
-  /// other processes make meanwhile. It may ask this object. Returns how many.
+  /// Removes the files, and their entries, of which `is_outdated` says so: by what was read before and by what the
+  /// manifest says now, whatever other processes make meanwhile. It may ask this object, not change it. Returns how
+  /// many.
   int remove_if(const std::vector<std::string>& paths, const std::function<bool(const std::string& path)>& is_outdated);
 
   /// Last simulation of the shot in this folder: the id of its settings, empty if there was none.

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <mutex>
 #include <set>
 
@@ -85,6 +86,11 @@ int run_process(std::vector<std::string> arguments, std::string* said, const std
   const std::lock_guard lock(children_mutex());
   children().erase(child);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::string why_not_started(int status) {
+  if (status == -ENOENT || status == 127) return "was not found";
+  return status < 0 ? std::string("could not be started: ") + std::strerror(-status) : std::string();
 }
 
 void end_processes() {

@@ -13,6 +13,10 @@ namespace softreel {
 /// end_processes misses none.
 int run_process(std::vector<std::string> arguments, std::string* said, const std::atomic<bool>* cancelled = nullptr);
 
+/// Why a program was not started, or not found by a shell: what follows its name, by what run_process returned; empty
+/// if it ran.
+std::string why_not_started(int status);
+
 /// Asks the programs that run_process waits for to end (SIGTERM). Callable from any thread.
 void end_processes();
 

@@ -49,12 +49,16 @@ SceneStage::SceneStage(ShotRun& run) : run_(run), textures_(run.shot()) {
   if (const StageKey key = coloring.key(); key != none) coloring_key_ = key;
 }
 
+namespace {
+
 /// The picture's upright of a camera that looks straight down or up, as if it had been tilted there from the front.
 Vec3f upright(const Camera& camera) {
   const Vec3f forward = (camera.target - camera.position).normalized();
   if (!(forward.cross(Vec3f::UnitY()).norm() <= 1e-3f)) return Vec3f::UnitY();
   return Vec3f(0, 0, forward.y() < 0 ? -1.0f : 1.0f);
 }
+
+}  // namespace
 
 Camera camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
   Camera camera;

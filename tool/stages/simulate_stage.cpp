@@ -195,7 +195,7 @@ void BodySimulation::produce(int frame) {
   const Cache::Produced produced = context_.cache.produce(
       kSimulationStage, frame_key(frame), [&] { context_.stop_if_cancelled(); }, simulate);
   const bool holds = simulator_holds_frame_ && !produced.from_cache;
-  put_aside();
+  if (!starts_from_rest(frame)) put_aside();  // else it is done, and frame_ is nothing but the rest that it began with
   frame_ = produced.from_cache ? unpack_body_frame(produced.bytes) : std::move(made);
   if (produced.from_cache) return note_loaded(frame, produced.seconds);
   simulator_holds_frame_ = holds;

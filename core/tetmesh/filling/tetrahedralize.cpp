@@ -194,8 +194,9 @@ Filling fill_with_count(const Job& job, double wanted) {
   for (int step = 0; step < kSteps; ++step) {
     WaitingLog lines;
     const Log log = lines.sink();
+    require_size(job, edge);
     Filling filling;
-    try {
+    try {  // the second step corrects the edge on the same lattice; all others, and after a refusal, have another
       filling = fill_with_edge({job.prepared, job.solids, job.params, job.name, job.threads, log, job.times}, edge,
                                lattice_shift(std::max(0, step - 1) + refusals));
     } catch (const Error&) {  // a part that one lattice misses another may meet

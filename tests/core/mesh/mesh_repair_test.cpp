@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -175,7 +177,7 @@ TEST(RepairMesh, TurnsPolygonsWithTheirTriangles) {
   }
 }
 
-/// Of the square of the number of pages it would not end.
+/// Each page is a piece of its own at one edge of them all.
 TEST(RepairMesh, TakesABookOfAHundredThousandPages) {
   SurfaceMesh book;
   constexpr Index kPages = 100000;
@@ -189,7 +191,7 @@ TEST(RepairMesh, TakesABookOfAHundredThousandPages) {
   EXPECT_EQ(book.triangles.size(), static_cast<std::size_t>(kPages));
 }
 
-/// Likewise: the used triangle far away makes a thousandth of the size as large as all the others together.
+/// The used triangle far away makes the reach of joining, a share of the size, longer than all the others together.
 TEST(RepairMesh, JoinsRimsThoughAnotherTriangleIsFarAway) {
   SurfaceMesh soup;
   constexpr Index kSide = 200;
@@ -210,7 +212,7 @@ TEST(RepairMesh, JoinsRimsThoughAnotherTriangleIsFarAway) {
     ASSERT_EQ(soup.joined[v], static_cast<Index>(v)) << "their distance is more than a quarter of their edges";
 }
 
-/// Shells in no order, each of its own: of the square of their number it would not end.
+/// Closed pieces all over a ball: each is nested in one of many.
 TEST(RepairMesh, TellsTheNestingOfAHundredThousandShells) {
   SurfaceMesh mesh = test::make_sphere(1000, 8, Vec3::Zero());
   const std::size_t ball = mesh.triangles.size();

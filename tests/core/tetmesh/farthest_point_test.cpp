@@ -80,14 +80,15 @@ TEST(FarthestDistance, IsAsFarAsDenseSamplesAndNoFarther) {
   }
 }
 
-/// Of the square of its length over its mean edge it would not end.
-TEST(FarthestDistance, OfANeedleIsThatOfItsTip) {
-  const SurfaceMesh ball = test::make_sphere(1, 12, Vec3::Zero());
-  const TriangleTree tree(ball.positions, ball.triangles);
-  SurfaceMesh needle;
-  needle.positions = {Vec3(2, 0, 0), Vec3(1e4, 0, 0), Vec3(2, 1e-3, 0)};
-  needle.triangles = {{0, 1, 2}};
-  EXPECT_NEAR(farthest_distance(needle.positions, needle.triangles, tree, Threads(1)), 1e4 - 1, 0.01 * 1e4);
+/// Between two balls a needle and a flat triangle are farthest in their middle.
+TEST(FarthestDistance, OfThinTrianglesIsThatOfTheirMiddle) {
+  SurfaceMesh balls = test::make_sphere(1, 12, Vec3::Zero());
+  test::append(balls, test::make_sphere(1, 12, Vec3(1e3, 0, 0)));
+  const TriangleTree tree(balls.positions, balls.triangles);
+  for (const Vec3& third : {Vec3(0, 1e-3, 0), Vec3(450, 1e-3, 0)}) {
+    const std::vector<Vec3> points{Vec3(0, 0, 0), Vec3(1e3, 0, 0), third};
+    EXPECT_NEAR(farthest_distance(points, {{0, 1, 2}}, tree, Threads(1)), 499, 0.011 * 499);
+  }
 }
 
 TEST(FarthestDistance, GivesEqualBitsAtOneAndFourThreads) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -157,8 +158,27 @@ TEST_F(Tetrahedralize, NamesTheEdgeThatWasGivenWhereAGradedPartIsTooThin) {
   }
 }
 
-/// The volume of an open part is about its own middle, and a small part's is no round-off of a place far away.
-TEST(FindParts, MeasuresEachPartAboutItsOwnMiddle) {
+/// Six squares, each a little larger than the side of the box that they make: open parts that are flat each by itself.
+TEST_F(Tetrahedralize, FillsABoxOfSeparatePanels) {
+  SurfaceMesh panels;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const auto first = static_cast<Index>(panels.positions.size());
+      for (const auto& [u, v] : {std::pair(-1.1, -1.1), {1.1, -1.1}, {1.1, 1.1}, {-1.1, 1.1}}) {
+        Vec3 p = side * Vec3::Unit(axis);
+        p[(axis + 1) % 3] = side * u;
+        p[(axis + 2) % 3] = v;
+        panels.positions.push_back(p);
+      }
+      panels.triangles.insert(panels.triangles.end(), {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+    }
+  const TetMesh mesh = fill(panels, {.edge = 0.2});
+  EXPECT_NEAR(measure_quality(mesh, Threads(1)).volume, 8, 0.8);
+}
+
+/// The volume of an open part is about the middle of the open ones, and a small closed part's is no round-off of a
+/// place far away.
+TEST(FindParts, MeasuresClosedPartsAboutTheirOwnMiddle) {
   SurfaceMesh bucket = test::make_box(Vec3::Constant(0.5), 4, Vec3::Zero());
   std::erase_if(bucket.triangles, [&](const Triangle& t) {
     return std::all_of(t.begin(), t.end(),

@@ -200,13 +200,17 @@ TEST_F(Farm, ARefusedRetryLeavesTheRecordAsItWas) {
   start("refused_retry");
   write_text(slurm_ + "/hold", "");
   ASSERT_EQ(farm("--chunk 2 --set render.samples=3").status, 0);
+  write_text(folder_ + "/out/.farm/ball/tasks/frames-1-2",
+             "failed\nnode9\n7\nframes-2_0.log\n2026-01-01T00:00:00Z\n2_0\n");
   write_text(slurm_ + "/refuse", "frames.sh");
   const Outcome refused = farm("--retry --partition nigth");
   EXPECT_EQ(refused.status, 1);
   EXPECT_NE(refused.err.find("no such partition"), std::string::npos) << refused.err;
   fs::remove(slurm_ + "/refuse");
   fs::remove(slurm_ + "/submitted");
-  EXPECT_EQ(tasks(1).size(), 4U) << "they are lost, and known";
+  const json known = tasks(1);
+  EXPECT_EQ(known.size(), 4U) << "they are lost, and known";
+  EXPECT_NE(known.dump().find("node9"), std::string::npos) << "what one said of itself is there: " << known;
   const Outcome again = farm("--retry");
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(submitted().find("nigth"), std::string::npos) << submitted();

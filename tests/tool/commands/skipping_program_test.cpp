@@ -264,7 +264,7 @@ TEST_F(Skipping, ExposureOfEqualFramesNeedsNoSimulation) {
   start("equal_exposure");
   const std::string still = "--set shot.mode=static --set 'body.ball.pull[0].keys=[{frame=1,translate=[0.1,0,0]}]' ";
   EXPECT_EQ(run_shot(still).linked, 3);
-  std::filesystem::remove_all(folder_ + "/out/.cache/2/simulation");
+  EXPECT_GT(std::filesystem::remove_all(folder_ + "/out/.cache/2/simulation"), 0U);
   const Work work = run_shot(still + "--set output.exposure=1.5");
   EXPECT_EQ(work.traced, 0);
   EXPECT_EQ(work.computed, 0);
@@ -281,6 +281,13 @@ TEST_F(Skipping, FramesBesideTheOneThatIsMadeNeedNoCache) {
   const json report = json::parse(outcome.out);
   EXPECT_EQ(report["simulation"]["computed"], 4);
   EXPECT_EQ(report["pictures"]["traced"], 4);
+  const Outcome independent =
+      run(fmt::format("softreel render {0}/shot.toml --output {0}/other --cache {0}/a_file/cache --quiet --json --set "
+                      "shot.mode=static --set shot.independent=true --set output.exr=true --set "
+                      "'render.channels=[\"motion\"]'",
+                      folder_));
+  ASSERT_EQ(independent.status, 0) << independent.err;
+  EXPECT_EQ(json::parse(independent.out)["simulation"]["computed"], 4);
 }
 
 TEST_F(Skipping, ExportAndPreviewNeverSimulateAgainAndWriteOnce) {

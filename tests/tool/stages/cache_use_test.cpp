@@ -76,11 +76,14 @@ TEST_F(CacheUseTest, WhatIsBeingWrittenStaysWhateverTheLimit) {
 
 TEST_F(CacheUseTest, TwoJobsOfOneNameAndNumberDoNotWaitForEachOther) {
   store_ten();
-  CacheUse first(cache_, "shot.toml", "out");  // as two containers have them that share the host's name
-  first.claim({"simulation/1"});
-  std::optional<CacheUse> second;
+  std::optional<CacheUse> first, second;
+  first.emplace(cache_, "shot.toml", "out");  // as two containers have them that share the host's name
+  first->claim({"simulation/1"});
   auto made = std::async(std::launch::async, [&] { second.emplace(cache_, "shot.toml", "out"); });
-  ASSERT_EQ(made.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  if (made.wait_for(std::chrono::seconds(20)) != std::future_status::ready) {
+    first.reset();  // or the second waits for ever
+    FAIL() << "the second waits for the first";
+  }
   second->claim({"simulation/2"});
   cut_cache(cache_, 0);
   EXPECT_TRUE(has(1));

@@ -63,24 +63,28 @@ class ReadSurfaceTest : public ::testing::Test {
 };
 
 TEST_F(ReadSurfaceTest, DoesNotTakeAFileThatChangesMeanwhileForTheOldOne) {
-  const std::string path = write_box(kMegabyte);
   const Log silent;
   const Cache cache((folder_ / "cache").string(), Cache::Storing::Required, silent);
+  const std::string path = write_box(kMegabyte);
   const StageKey old_key = read(path, SurfaceUse::LookUp).surface.stored;
-  auto claim = cache.try_claim(kSurfaceStage, old_key);  // as another program does that is reading it
-  ASSERT_TRUE(claim);
   std::string error;
-  std::thread reader([&] {
-    try {
-      read(path, SurfaceUse::Keep);
-    } catch (const Error& problem) {
-      error = problem.what();
-    }
-  });
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  write_box(kMegabyte, 0.25);
-  claim.reset();
-  reader.join();
+  // The reader is to wait before the file changes; on a machine where it comes too late, it has more time.
+  for (int wait = 100; error.empty() && wait < 10000; wait *= 2) {
+    write_box(kMegabyte);
+    auto claim = cache.try_claim(kSurfaceStage, old_key);  // as another program does that is reading it
+    ASSERT_TRUE(claim);
+    std::thread reader([&] {
+      try {
+        read(path, SurfaceUse::Keep);
+      } catch (const Error& problem) {
+        error = problem.what();
+      }
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+    write_box(kMegabyte, 0.25);
+    claim.reset();
+    reader.join();
+  }
   EXPECT_NE(error.find("changed while it was being read"), std::string::npos) << error;
   write_box(kMegabyte);
   EXPECT_EQ(read(path, SurfaceUse::Keep).surface.mesh.positions.front(), Vec3(0, 0, 0));
