@@ -43,9 +43,9 @@ int run_explain(const ExplainOptions& options) {
   const FieldExplanation explanation = explain(options.field);
   if (!options.shot.empty() && explanation.text.is_table)
     throw input_error(
-        fmt::format("--shot: {} is a table, which has no value.\n  Accepted with one of its fields: softreel explain "
-                    "{} lists them.",
-                    options.field, options.field));
+        fmt::format("--shot: {0} is a table, which has no value.\n"
+                    "  Accepted with one of its fields: softreel explain {0} lists them.",
+                    options.field));
   std::vector<FieldValue> values;
   if (!options.shot.empty()) {
     std::vector<Override> overrides;

@@ -82,11 +82,10 @@ std::string run_slurm(const std::vector<std::string>& command) {
   std::string said;
   const int status = run_process(command, &said);
   if (const std::string why = why_not_started(status); !why.empty())
-    throw work_error(
-        fmt::format("{}: the program {}; this machine has no Slurm that can be asked.\n  Run softreel farm where jobs "
-                    "are submitted "
-                    "from, or write a template for another farm with --engine openjd.",
-                    command.front(), why));
+    throw work_error(fmt::format(
+        "{}: the program {}; this machine has no Slurm that can be asked.\n"
+        "  Run softreel farm where jobs are submitted from, or write a template for another farm with --engine openjd.",
+        command.front(), why));
   if (status != 0)
     throw work_error(
         fmt::format("{} ended with status {}: {}", command.front(), status, said.empty() ? "nothing said" : said));

@@ -64,16 +64,11 @@ class Turntable {
         keys[file.path] = file.key;
         extensions.insert(std::filesystem::path(file.path).extension());
       }
-    std::vector<std::string> paths = outputs_.paths();
-    for (const auto& [path, key] : keys) paths.push_back(path);
-    const std::string movie = outputs_.path("mp4");
-    outputs_.remove_if(paths, [&](const std::string& path) {
-      if (!extensions.contains(std::filesystem::path(path).extension())) return false;
-      const auto wanted = keys.find(path);
-      const OutputState state = outputs_.claimed_state(path, wanted == keys.end() ? StageKey() : wanted->second);
-      return state == OutputState::Stale || state == OutputState::Unknown;
-    });
-    outputs_.remove_if({movie},
+    for (const std::string& path : outputs_.paths())
+      if (extensions.contains(std::filesystem::path(path).extension()))
+        keys.emplace(path, StageKey());  // of no key now
+    outputs_.remove_outdated(keys);
+    outputs_.remove_if({outputs_.path("mp4")},
                        [&](const std::string&) { return is_movie_outdated(session_.shot(), 1, count, outputs_); });
   }
 

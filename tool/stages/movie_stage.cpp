@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <sstream>
 #include <vector>
 
 #include <fmt/format.h>
@@ -42,53 +43,29 @@ std::string filters(const Shot& shot) {
          "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
 }
 
+/// The words of a text without quotes.
+void add_words(const std::string& text, std::vector<std::string>& words) {
+  std::istringstream in(text);
+  for (std::string word; in >> word;) words.push_back(word);
+}
+
 std::vector<std::string> ffmpeg_command(const Shot& shot, int frames, const std::string& list,
                                         const std::string& target) {
-  return {"ffmpeg",
-          "-hide_banner",
-          "-loglevel",
-          "error",
-          "-y",
-          "-r",
-          fmt::format("{}", shot.settings.fps),
-          "-f",
-          "concat",
-          "-safe",
-          "0",
-          "-i",
-          list,
-          "-frames:v",
-          std::to_string(frames),
-          "-vf",
-          filters(shot),
-          "-colorspace",
-          "bt709",
-          "-color_primaries",
-          "bt709",
-          "-color_trc",
-          "bt709",
-          "-color_range",
-          "tv",
-          "-c:v",
-          "libx264",
-          "-crf",
-          "16",
-          "-preset",
-          "medium",
-          "-fflags",
-          "+bitexact",
-          "-flags:v",
-          "+bitexact",
-          "-movflags",
-          "+faststart",
-          "-f",
-          "mp4",
-          target};
+  std::vector<std::string> words;
+  add_words(fmt::format("ffmpeg -hide_banner -loglevel error -y -r {} -f concat -safe 0 -i", shot.settings.fps), words);
+  words.push_back(list);
+  add_words(fmt::format("-frames:v {} -vf {}", frames, filters(shot)), words);
+  // What the numbers mean: the pictures are sRGB.
+  add_words("-colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv", words);
+  add_words("-c:v libx264 -crf 16 -preset medium -fflags +bitexact -flags:v +bitexact -movflags +faststart -f mp4",
+            words);
+  words.push_back(target);
+  return words;
 }
 
 StageKey movie_key(const Shot& shot, int first, int last, const Outputs& outputs) {
   KeyHasher key("movie 3");
-  key.add(shot.settings.fps).add(has_alpha(shot));
+  key.add(shot.settings.fps);
   for (int frame = first; frame <= last; ++frame) {
     const auto entry = outputs.entry(outputs.frame_path(frame, "png"));
     key.add(entry ? entry->checksum : "");
@@ -113,11 +90,11 @@ std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, 
                                  &said, &context.cancelled);
   context.stop_if_cancelled();
   if (const std::string why = why_not_started(status); !why.empty())
-    throw work_error(
-        fmt::format("{}: the movie was not made: the program ffmpeg {}.\n  All frames are there. Install the package "
-                    "ffmpeg, or see "
-                    "to that it can run, and run again (only the movie will be made); or set output.movie = false.",
-                    path, why));
+    throw work_error(fmt::format(
+        "{}: the movie was not made: the program ffmpeg {}.\n"
+        "  All frames are there. Install the package ffmpeg, or see to that it can run, and run again (only the movie "
+        "will be made); or set output.movie = false.",
+        path, why));
   // ffmpeg ends with 0 even if it could not write the end of the file, but it says so.
   if (status != 0 || !said.empty())
     throw work_error(

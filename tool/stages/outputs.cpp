@@ -189,6 +189,15 @@ int Outputs::remove_if(const std::vector<std::string>& paths,
   return removed;
 }
 
+int Outputs::remove_outdated(const std::map<std::string, StageKey>& keys) {
+  std::vector<std::string> paths;
+  for (const auto& [path, key] : keys) paths.push_back(path);
+  return remove_if(paths, [&](const std::string& path) {
+    const OutputState state = claimed_state(path, keys.at(path));
+    return state == OutputState::Stale || state == OutputState::Unknown;
+  });
+}
+
 void Outputs::note_simulation() {
   if (simulated_settings() == settings_id_) return;
   update([&](Contents& contents) {

@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "core/base/log.h"
-#include "tool/stages/atomic_file.h"
 #include "tool/stages/key.h"
 
 namespace softreel {
+
+class AtomicFile;
 
 /// What the manifest says of one file.
 struct OutputEntry {
@@ -70,6 +71,10 @@ class Outputs {
   /// manifest says now, whatever other processes make meanwhile. It may ask this object, not change it. Returns how
   /// many.
   int remove_if(const std::vector<std::string>& paths, const std::function<bool(const std::string& path)>& is_outdated);
+
+  /// Removes what is under these paths and not of these keys: files of an older shot, and files that nobody knows.
+  /// Returns how many.
+  int remove_outdated(const std::map<std::string, StageKey>& keys);
 
   /// Last simulation of the shot in this folder: the id of its settings, empty if there was none.
   std::string simulated_settings() const;

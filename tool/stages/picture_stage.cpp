@@ -77,17 +77,10 @@ double PictureStage::seconds(int frame) const {
 }
 
 int PictureStage::remove_outdated(int first, int last) {
-  std::vector<std::string> paths;
   std::map<std::string, StageKey> keys;  // by path
   for (int frame = first; frame <= last; ++frame)
-    for (const File& file : files(frame, trace_key(frame))) {
-      paths.push_back(file.path);
-      keys[file.path] = file.key;
-    }
-  return outputs_.remove_if(paths, [&](const std::string& path) {
-    const OutputState state = outputs_.claimed_state(path, keys.at(path));
-    return state == OutputState::Stale || state == OutputState::Unknown;
-  });
+    for (const File& file : files(frame, trace_key(frame))) keys[file.path] = file.key;
+  return outputs_.remove_outdated(keys);
 }
 
 bool PictureStage::recall(int frame, const StageKey& picture) {

@@ -193,6 +193,15 @@ TEST(FindParts, MeasuresClosedPartsAboutTheirOwnMiddle) {
   EXPECT_NEAR(parts.parts[1].volume, 1e-6, 1e-12);
 }
 
+/// About half an edge wide: the lattice about the body's centre has no tetrahedron in it, others do.
+TEST_F(Tetrahedralize, FillsASmallPartThatAnotherLatticeMeets) {
+  SurfaceMesh both = test::make_sphere(1, 16, Vec3::Zero());
+  test::append(both, test::make_sphere(0.18, 6, Vec3(3, 0, 0)));
+  const TetMesh mesh = fill(both, {.tets = 2000});
+  EXPECT_EQ(count_pieces(mesh), 2);
+  EXPECT_NEAR(static_cast<double>(mesh.tets.size()), 2000, 100);
+}
+
 TEST_F(Tetrahedralize, MeetsTheWantedCount) {
   for (const std::int64_t wanted : {2000, 9000, 30000}) {
     const TetMesh mesh = fill(test::make_torus(1, 0.35, 48, 24, Vec3::Zero()), {0, wanted});

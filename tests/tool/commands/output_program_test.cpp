@@ -274,50 +274,47 @@ TEST(Turntable, LeavesNothingOfALongerTurnBesideAShorterOne) {
   EXPECT_TRUE(exists(folder + "/out/ball.turntable.mp4"));
 }
 
-/// The bytes of a movie's first frame, with the matrix of BT.709, as players take HD for whatever it says.
-std::vector<int> first_frame(const std::string& movie) {
-  const Outcome decoded = run(fmt::format(
-      "ffmpeg -loglevel error -y -i {0} -frames:v 1 -vf scale=in_color_matrix=bt709,format=rgb24 -f rawvideo {0}.raw",
-      movie));
-  EXPECT_EQ(decoded.status, 0) << decoded.err;
-  std::vector<int> bytes;
-  for (const char c : read_text(movie + ".raw")) bytes.push_back(static_cast<unsigned char>(c));
-  return bytes;
-}
+/// A shot's first picture over grey, and that of its movie by the matrix of BT.709, as players take HD for whatever it
+/// says.
+struct MovieAndPicture {
+  MovieAndPicture(const std::string& name, const std::string& options) : folder(shot_folder(name)) {
+    const Outcome made = run(
+        fmt::format("softreel render {0}/shot.toml --frames 1-4 --output {0}/out --quiet --set output.movie=true {1}",
+                    folder, options));
+    EXPECT_EQ(made.status, 0) << made.err;
+    const Outcome decoded =
+        run(fmt::format("ffmpeg -loglevel error -i {0}/out/ball.mp4 -frames:v 1 -vf "
+                        "scale=in_color_matrix=bt709,format=rgb24 -f rawvideo "
+                        "{0}/frame.raw",
+                        folder));
+    EXPECT_EQ(decoded.status, 0) << decoded.err;
+    for (const char c : read_text(folder + "/frame.raw")) frame.push_back(static_cast<unsigned char>(c));
+    for (const std::uint8_t value : over_grey(read_png(folder + "/out/ball.0001.png")).pixels) picture.push_back(value);
+    EXPECT_EQ(frame.size(), picture.size());
+  }
+  std::string folder;
+  std::vector<int> frame, picture;
+};
 
 TEST(Movie, HasTheColoursOfItsPicturesAndSaysHowTheyAreCoded) {
-  const std::string folder = shot_folder("movie_colours");
-  const Outcome made = run(
-      fmt::format("softreel render {0}/shot.toml --frames 1-4 --output {0}/out --quiet --set output.movie=true --set "
-                  "environment.zenith=[0.9,0.02,0.01] --set environment.horizon=[0.9,0.02,0.01]",
-                  folder));
-  ASSERT_EQ(made.status, 0) << made.err;
+  const MovieAndPicture red("movie_colours",
+                            "--set environment.zenith=[0.9,0.02,0.01] --set environment.horizon=[0.9,0.02,0.01]");
   const Outcome said = run(fmt::format(
-      "ffprobe -v error -select_streams v -show_entries stream=color_range,color_space -of csv=p=0 {}/out/ball.mp4",
-      folder));
-  EXPECT_EQ(said.out, "tv,bt709\n");
-  const DisplayImage picture = read_png(folder + "/out/ball.0001.png");
-  const std::vector<int> frame = first_frame(folder + "/out/ball.mp4");
-  ASSERT_EQ(picture.pixels.size(), frame.size());
+      "ffprobe -v error -select_streams v -show_entries stream=color_range,color_space,color_transfer,color_primaries "
+      "-of csv=p=0 {}/out/ball.mp4",
+      red.folder));
+  EXPECT_EQ(said.out, "tv,bt709,iec61966-2-1,bt709\n");
   std::array<double, 3> difference{};
-  for (std::size_t k = 0; k < picture.pixels.size(); ++k)
-    difference[k % 3] += 3.0 * (frame[k] - picture.pixels[k]) / static_cast<double>(frame.size());
+  for (std::size_t k = 0; k < red.frame.size(); ++k)
+    difference[k % 3] += 3.0 * (red.frame[k] - red.picture[k]) / static_cast<double>(red.frame.size());
   for (const double of_channel : difference) EXPECT_NEAR(of_channel, 0, 2.5);
 }
 
 TEST(Movie, ShowsCaughtShadowsOverGrey) {
-  const std::string folder = shot_folder("movie_shadow");
-  const Outcome made = run(
-      fmt::format("softreel render {0}/shot.toml --frames 1-4 --output {0}/out --quiet --set output.movie=true --set "
-                  "ground.shadow_catcher=true",
-                  folder));
-  ASSERT_EQ(made.status, 0) << made.err;
-  const DisplayImage over = over_grey(read_png(folder + "/out/ball.0001.png"));
-  const std::vector<int> frame = first_frame(folder + "/out/ball.mp4");
-  ASSERT_EQ(over.pixels.size(), frame.size());
+  const MovieAndPicture caught("movie_shadow", "--set ground.shadow_catcher=true");
   double difference = 0;
-  for (std::size_t k = 0; k < frame.size(); ++k)
-    difference += std::abs(frame[k] - over.pixels[k]) / static_cast<double>(frame.size());
+  for (std::size_t k = 0; k < caught.frame.size(); ++k)
+    difference += std::abs(caught.frame[k] - caught.picture[k]) / static_cast<double>(caught.frame.size());
   EXPECT_LT(difference, 6);
 }
 

@@ -208,12 +208,6 @@ TEST(Outputs, RemoveNothingThatAnotherProcessHasJustMade) {
   const Folder folder("fresh");
   const Log log;
   const Bytes bytes{1};
-  const auto remove_outdated = [](Outputs& outputs, const std::string& path) {
-    return outputs.remove_if({path}, [&](const std::string& asked) {
-      const OutputState state = outputs.claimed_state(asked, "new");
-      return state == OutputState::Stale || state == OutputState::Unknown;
-    });
-  };
   Outputs(folder.path, "shot", log).write(folder.path + "/shot.mp4", "old", bytes, 0);
   Outputs a(folder.path, "shot", log);
   const std::string picture = a.frame_path(1, "png"), movie = a.path("mp4");
@@ -221,12 +215,12 @@ TEST(Outputs, RemoveNothingThatAnotherProcessHasJustMade) {
     Outputs b(folder.path, "shot", log);
     a.write(path, "new", bytes, 0);
     EXPECT_NE(b.claimed_state(path, "new"), OutputState::Done);  // by what it read before
-    EXPECT_EQ(remove_outdated(b, path), 0);
+    EXPECT_EQ(b.remove_outdated({{path, "new"}}), 0);
     EXPECT_TRUE(a.is_done(path, "new")) << path;
     EXPECT_TRUE(b.is_done(path, "new")) << path;
   }
   a.write(picture, "newer", bytes, 0);
-  EXPECT_EQ(remove_outdated(a, picture), 1);
+  EXPECT_EQ(a.remove_outdated({{picture, "new"}}), 1);
   EXPECT_FALSE(fs::exists(picture));
 }
 
