@@ -1,6 +1,7 @@
 #include "core/base/thread_team.h"
 
 #include <chrono>
+#include <system_error>
 
 #include "core/base/check.h"
 
@@ -31,9 +32,19 @@ void ThreadTeam::take_part() {
   for (std::int64_t k = next_.fetch_add(1); k < size_; k = next_.fetch_add(1)) (*body_)(k);
 }
 
+/// Where no more threads may be started (a limit of the container), those that there are do the work: the caller alone
+/// ends every job too.
+void ThreadTeam::start_helpers() {
+  try {
+    while (helpers_.size() < static_cast<std::size_t>(size_of_team_)) helpers_.emplace_back([this] { help(); });
+  } catch (const std::system_error&) {
+    size_of_team_ = static_cast<int>(helpers_.size());
+  }
+}
+
 bool ThreadTeam::run(std::int64_t n, const std::function<void(std::int64_t)>& body) {
   if (taken_.exchange(true)) return false;
-  while (helpers_.size() < static_cast<std::size_t>(size_of_team_)) helpers_.emplace_back([this] { help(); });
+  start_helpers();
   body_ = &body;
   size_ = n;
   next_ = 0;

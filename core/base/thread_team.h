@@ -26,11 +26,12 @@ class ThreadTeam {
   bool run(std::int64_t n, const std::function<void(std::int64_t)>& body);
 
  private:
+  void start_helpers();
   void help();
   void take_part();
   bool next_job(int& last) const;
 
-  int size_of_team_;
+  int size_of_team_;                ///< of the helpers; fewer than asked for where the system starts no more
   std::atomic<bool> taken_{false};  ///< by a caller of run
   // The job: written while no helper is in it, that is while it is closed and active_ is 0.
   const std::function<void(std::int64_t)>* body_ = nullptr;

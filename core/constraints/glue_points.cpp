@@ -20,6 +20,10 @@ constexpr double kCell = 0.5;
 /// Where the piece next to one corner of a triangle has its centre: the corner's weight.
 constexpr double kCornerWeight = 11.0 / 18;
 
+/// Triangles that rows of equal pieces would cut so many times finer than their area asks for are halved across their
+/// longest edge instead: the strips of a tube.
+constexpr double kThin = 16;
+
 /// Surfaces that would need more are far larger than what they are glued to.
 constexpr double kMostPieces = 2e7;
 
@@ -63,10 +67,12 @@ class PieceGatherer {
     normal.cwiseAbs().maxCoeff(&axis);
     side_ = static_cast<int>(2 * axis) + (normal[axis] < 0 ? 1 : 0);
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    const double wanted = std::ceil(longest / (kCell * spacing_));
-    pieces_ += wanted * wanted;
+    const double size = kCell * spacing_, wanted = std::ceil(longest / size);
+    const double enough = 4 * (area / (size * size) + longest / size);
+    const bool thin = wanted * wanted > kThin * enough;
+    pieces_ += thin ? enough : wanted * wanted;
     if (!(pieces_ <= kMostPieces)) throw too_many();
-    const auto cuts = static_cast<int>(wanted);
+    const auto cuts = static_cast<int>(std::min(wanted, kMostPieces));
     const auto add_at = [&](const Vec3& weights, double share) {
       Eigen::Index nearest = 0;
       weights.maxCoeff(&nearest);
@@ -77,6 +83,10 @@ class PieceGatherer {
       const double other = (1 - kCornerWeight) / 2;
       for (int k = 0; k < 3; ++k) add_at(Vec3::Constant(other) + (kCornerWeight - other) * Vec3::Unit(k), 1.0 / 3);
       return;
+    }
+    if (thin) {
+      const auto place = [&](const Vec3& weights) -> Vec3 { return weights[0] * a + weights[1] * b + weights[2] * c; };
+      return halve({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, 1.0, size, place, add_at);
     }
     // Rows of triangles parallel to an edge: (i, j) and its mirror image in the rhombus.
     const double share = 1.0 / (static_cast<double>(cuts) * cuts);
@@ -101,6 +111,22 @@ class PieceGatherer {
   static Vec3 center_weights(int i, int j, double inside, int cuts) {
     const double second = (i + inside) / cuts, third = (j + inside) / cuts;
     return {1 - second - third, second, third};
+  }
+
+  /// Halves a part of a triangle, given by the weights of its corners, down to pieces of `size`.
+  template <typename Place, typename Add>
+  static void halve(const std::array<Vec3, 3>& part, double share, double size, const Place& place, const Add& add_at) {
+    std::size_t longest = 0;
+    std::array<double, 3> length{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      length[k] = (place(part[(k + 1) % 3]) - place(part[k])).norm();
+      if (length[k] > length[longest]) longest = k;
+    }
+    if (length[longest] <= size) return add_at((part[0] + part[1] + part[2]) / 3, share);
+    const Vec3 &from = part[longest], &to = part[(longest + 1) % 3], &apex = part[(longest + 2) % 3];
+    const Vec3 middle = 0.5 * (from + to);
+    halve({from, middle, apex}, share / 2, size, place, add_at);
+    halve({middle, to, apex}, share / 2, size, place, add_at);
   }
 
   void add(const Piece& piece) {

@@ -74,12 +74,23 @@ void NodePins::update(std::span<Grab> grabs, double frame, std::span<const Vec3>
   }
 }
 
-PinnedNodes NodePins::at(double frame, std::span<const Grab> grabs) const {
+PinnedNodes NodePins::nothing_held() const {
   PinnedNodes pinned;
   pinned.held.assign(rest_positions_.size(), 0);
   pinned.targets.assign(rest_positions_.size(), Vec3::Zero());
-  const Grab nothing;
+  return pinned;
+}
+
+PinnedNodes NodePins::at(double frame, std::span<const Grab> grabs) const {
+  PinnedNodes pinned = nothing_held();
   std::vector<std::size_t> owner(rest_positions_.size(), 0);
+  hold(frame, grabs, pinned, owner);
+  return pinned;
+}
+
+void NodePins::hold(double frame, std::span<const Grab> grabs, PinnedNodes& pinned,
+                    std::vector<std::size_t>& owner) const {
+  const Grab nothing;
   for (std::size_t p = 0; p < pins_.size(); ++p) {
     const Pin& pin = pins_[p];
     const Held& its = held_[p];
@@ -105,10 +116,18 @@ PinnedNodes NodePins::at(double frame, std::span<const Grab> grabs) const {
       }
     }
   }
-  return pinned;
+}
+
+bool NodePins::share_a_node() const {
+  std::vector<std::uint8_t> held(rest_positions_.size(), 0);
+  for (const Held& pin : held_)
+    for (const Index node : pin.nodes)
+      if (held[static_cast<std::size_t>(node)]++ != 0) return true;
+  return false;
 }
 
 std::string NodePins::find_conflict() const {
+  if (!share_a_node()) return {};
   std::vector<double> frames;
   for (const Pin& pin : pins_) {
     for (const Key<Transform>& key : pin.track.keys) frames.push_back(key.frame);
@@ -119,8 +138,15 @@ std::string NodePins::find_conflict() const {
   }
   std::sort(frames.begin(), frames.end());
   frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
-  for (const double frame : frames)
-    if (std::string conflict = at(frame).conflict; !conflict.empty()) return conflict;
+  // In one workspace: a captured motion has a key a frame, and a mesh far more nodes than its pins hold.
+  PinnedNodes pinned = nothing_held();
+  std::vector<std::size_t> owner(rest_positions_.size(), 0);
+  for (const double frame : frames) {
+    hold(frame, {}, pinned, owner);
+    if (!pinned.conflict.empty()) return pinned.conflict;
+    for (const Held& pin : held_)
+      for (const Index node : pin.nodes) pinned.held[static_cast<std::size_t>(node)] = 0;
+  }
   return {};
 }
 

@@ -42,6 +42,11 @@ class NodePins {
   std::string find_conflict() const;
 
  private:
+  /// at(), into a workspace whose `held` and `owner` are zero.
+  void hold(double frame, std::span<const Grab> grabs, PinnedNodes& pinned, std::vector<std::size_t>& owner) const;
+  PinnedNodes nothing_held() const;
+  bool share_a_node() const;
+
   /// The nodes of a pin.
   struct Held {
     std::vector<Index> nodes;     ///< sorted

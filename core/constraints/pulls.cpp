@@ -108,8 +108,8 @@ double pull_energy(const ActivePull& pull, std::span<const Vec3> positions) {
   return pull.max_force * (force - 0.5 * pull.max_force) / pull.stiffness;
 }
 
-void add_pull_forces(const ActivePull& pull, std::span<const Vec3> positions, std::span<Vec3> forces) {
-  const double factor = pull_factor(pull, positions);
+void add_pull_forces(const ActivePull& pull, std::span<const Vec3> positions, std::span<Vec3> forces, double scale) {
+  const double factor = scale * pull_factor(pull, positions);
   for (const Spring& spring : pull.springs) {
     const Vec3 force = factor * spring.stiffness * stretch(spring, positions);
     for (std::size_t k = 0; k < spring.count; ++k)

@@ -65,8 +65,9 @@ ActivePull softened(ActivePull pull, double factor);
 /// Energy of the springs, J.
 double pull_energy(const ActivePull& pull, std::span<const Vec3> positions);
 
-/// Adds the springs' forces at `positions` to the nodes, N: minus the gradient of pull_energy.
-void add_pull_forces(const ActivePull& pull, std::span<const Vec3> positions, std::span<Vec3> forces);
+/// Adds scale * the springs' forces at `positions` to the nodes, N: minus the gradient of pull_energy. Cost: the
+/// springs alone, however many nodes there are.
+void add_pull_forces(const ActivePull& pull, std::span<const Vec3> positions, std::span<Vec3> forces, double scale = 1);
 
 /// Adds scale * (secant) stiffness, blocks factor k w_i w_j I of each spring's element, to a matrix whose pattern has
 /// them.

@@ -287,9 +287,7 @@ void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<cons
     if (!change.empty()) residual[i] -= work.node_terms[i] * change[i];
   }
   for (const ActivePull& pull : work.pulls) {
-    std::vector<Vec3> forces(residual.size(), Vec3::Zero());
-    add_pull_forces(pull, work.positions, forces);
-    for (std::size_t i = 0; i < residual.size(); ++i) residual[i] += t * forces[i];
+    add_pull_forces(pull, work.positions, residual, t);
     subtract_pull_product(pull, work.positions, t * seconds.position, end_velocities, residual);
     if (!work.offsets.empty()) subtract_pull_product(pull, work.positions, t, work.offsets, residual);
   }

@@ -14,17 +14,18 @@ Index degree(const BlockPattern& pattern, Index i) {
   return static_cast<Index>(pattern.row_offsets[row + 1] - pattern.row_offsets[row]);
 }
 
-/// Nodes in breadth-first order from `start`, neighbours by ascending degree; marks them in `visited`.
-std::vector<Index> breadth_first(const BlockPattern& pattern, Index start, std::vector<bool>& visited) {
+/// Nodes in breadth-first order from `start`, neighbours by ascending degree; marks them in `visited` by `stamp`.
+std::vector<Index> breadth_first(const BlockPattern& pattern, Index start, std::uint8_t stamp,
+                                 std::vector<std::uint8_t>& visited) {
   std::vector<Index> order{start}, neighbors;
-  visited[static_cast<std::size_t>(start)] = true;
+  visited[static_cast<std::size_t>(start)] = stamp;
   for (std::size_t head = 0; head < order.size(); ++head) {
     const auto row = static_cast<std::size_t>(order[head]);
     neighbors.clear();
     for (std::int64_t b = pattern.row_offsets[row]; b < pattern.row_offsets[row + 1]; ++b) {
       const Index column = pattern.column_indices[static_cast<std::size_t>(b)];
-      if (visited[static_cast<std::size_t>(column)]) continue;
-      visited[static_cast<std::size_t>(column)] = true;
+      if (visited[static_cast<std::size_t>(column)] == stamp) continue;
+      visited[static_cast<std::size_t>(column)] = stamp;
       neighbors.push_back(column);
     }
     std::stable_sort(neighbors.begin(), neighbors.end(),
@@ -36,13 +37,12 @@ std::vector<Index> breadth_first(const BlockPattern& pattern, Index start, std::
 
 /// Reverse Cuthill-McKee, each piece from the far end of a first search.
 std::vector<Index> elimination_order(const BlockPattern& pattern) {
-  std::vector<bool> visited(static_cast<std::size_t>(pattern.rows()), false);
+  std::vector<std::uint8_t> visited(static_cast<std::size_t>(pattern.rows()), 0);
   std::vector<Index> order;
   for (Index i = 0; i < pattern.rows(); ++i) {
-    if (visited[static_cast<std::size_t>(i)]) continue;
-    std::vector<bool> probe = visited;
-    const Index far_end = breadth_first(pattern, i, probe).back();
-    const std::vector<Index> piece = breadth_first(pattern, far_end, visited);
+    if (visited[static_cast<std::size_t>(i)] != 0) continue;
+    const Index far_end = breadth_first(pattern, i, 1, visited).back();
+    const std::vector<Index> piece = breadth_first(pattern, far_end, 2, visited);
     order.insert(order.end(), piece.begin(), piece.end());
   }
   std::reverse(order.begin(), order.end());

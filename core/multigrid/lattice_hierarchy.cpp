@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "core/base/check.h"
 #include "core/multigrid/coarse_solver.h"
@@ -18,6 +19,14 @@ constexpr double kLeastReduction = 0.8;
 /// A level is the last if factoring it takes at most so many multiply-adds a block of the mesh's matrix: then it costs
 /// less than the iterations it saves (slender and thin bodies, which coarse lattices bend badly).
 constexpr double kCheapFactorWork = 100;
+
+/// A level that ends the hierarchy although factoring it takes more multiply-adds a block of the mesh's matrix, some
+/// times what a step takes otherwise, is worth another try.
+constexpr double kDearFactorWork = 1000;
+
+/// Multiply-adds that no step can wait for, about half a minute. Up to there flat tetrahedra are best factored: cycles
+/// on lattices far coarser than they are thick took 100 iterations at 10 to 1 and did not converge at 100 to 1.
+constexpr double kMostFactorWork = 1e11;
 
 /// Copies by stiffness that make more than so many times the coarse nodes are left out altogether: where stiff and soft
 /// elements are mixed one by one, copies carry nothing together and each level is nearly as large as the one before. At
@@ -39,18 +48,36 @@ Vec3 upper_corner(const std::vector<Vec3>& points) {
   return high;
 }
 
+double volume_of(const TetMesh& mesh, const Tet& tet) {
+  const auto at = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(tet[k])]; };
+  return std::abs(tet_volume(at(0), at(1), at(2), at(3)));
+}
+
 /// Spacing of the BCC lattice whose tetrahedra, 12 per cube, have the mesh's median volume; 0 for no tetrahedra.
 /// Volume, not edges: it says how many nodes there are, and the median minds neither slivers nor a few large elements.
 double typical_spacing(const TetMesh& mesh) {
   std::vector<double> volumes;
-  for (const Tet& tet : mesh.tets) {
-    const auto at = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(tet[k])]; };
-    volumes.push_back(std::abs(tet_volume(at(0), at(1), at(2), at(3))));
-  }
+  for (const Tet& tet : mesh.tets) volumes.push_back(volume_of(mesh, tet));
   if (volumes.empty()) return 0;
   const auto middle = volumes.begin() + static_cast<std::ptrdiff_t>(volumes.size() / 2);
   std::nth_element(volumes.begin(), middle, volumes.end());
   return std::cbrt(12 * *middle);
+}
+
+/// The same around each node, from the mean volume of its tetrahedra; of a node of none `otherwise`.
+std::vector<double> node_spacings(const TetMesh& mesh, double otherwise) {
+  std::vector<double> volumes(mesh.nodes.size(), 0.0), tets(mesh.nodes.size(), 0.0);
+  for (const Tet& tet : mesh.tets) {
+    const double volume = volume_of(mesh, tet);
+    for (const Index node : tet) {
+      volumes[static_cast<std::size_t>(node)] += volume;
+      ++tets[static_cast<std::size_t>(node)];
+    }
+  }
+  std::vector<double> spacings;
+  for (std::size_t i = 0; i < volumes.size(); ++i)
+    spacings.push_back(tets[i] > 0 ? std::cbrt(12 * volumes[i] / tets[i]) : otherwise);
+  return spacings;
 }
 
 /// The lattice whose doublings cover the mesh: its own, or for a mesh made elsewhere one of like tetrahedra.
@@ -67,11 +94,13 @@ LatticeFrame finest_frame(const TetMesh& mesh) {
   return frame;
 }
 
-/// Young's modulus of the stiffest element with both nodes, per block; empty if all are alike.
+/// Young's modulus of the stiffest element with both nodes, per block; empty if all are alike within `contrast`.
 std::vector<double> block_stiffness(const TetMesh& mesh, std::span<const double> element_stiffness,
-                                    const BlockPattern& pattern) {
+                                    const BlockPattern& pattern, double contrast) {
   if (element_stiffness.empty()) return {};
   CHECK(element_stiffness.size() == mesh.tets.size());
+  const auto [least, greatest] = std::minmax_element(element_stiffness.begin(), element_stiffness.end());
+  if (*greatest <= contrast * *least) return {};
   std::vector<double> stiffest(static_cast<std::size_t>(pattern.blocks()), 0.0);
   for (std::size_t e = 0; e < mesh.tets.size(); ++e)
     for (const Index i : mesh.tets[e])
@@ -191,7 +220,38 @@ Coarsening coarsen_with_few_copies(LevelNodes& fine, const BlockPattern& pattern
   return plain;
 }
 
-std::vector<PlainLevel> coarsen_repeatedly(PlainLevel finest, LatticeFrame frame, const MultigridParams& params) {
+/// Whether a coarsening is worth a level. Nodes that stay are no reason against it, as long as there are fewer nodes.
+bool pays(const Coarsening& coarse, const PlainLevel& fine) {
+  const auto nodes = static_cast<double>(coarse.nodes.positions.size());
+  return nodes <= kLeastReduction * fine.pattern.rows() || (coarse.staying > 0 && nodes < fine.pattern.rows());
+}
+
+/// A coarsening that pays where that to the next lattice does not: first without regard to stiffness, whose copies each
+/// inclusion has on all levels, then on lattices that are coarser still (flat tetrahedra are smaller by volume than
+/// their edges are long).
+std::optional<Coarsening> coarsen_further(PlainLevel& fine, LatticeFrame& frame, const MultigridParams& params) {
+  LevelNodes& nodes = fine.nodes;
+  nodes.block_stiffness.clear();
+  const bool leap = factor_work(fine.pattern) > kMostFactorWork;
+  const double extent = (upper_corner(nodes.positions) - lower_corner(nodes.positions)).maxCoeff();
+  do {
+    Coarsening coarse = coarsen(nodes, fine.pattern, frame, {params.dropped_weight, params.stiffness_contrast});
+    if (pays(coarse, fine)) return coarse;
+    frame.spacing *= 2;
+  } while (leap && frame.spacing < 2 * extent);
+  return std::nullopt;
+}
+
+bool is_dear(const BlockPattern& last, const BlockPattern& finest, const MultigridParams& params) {
+  return last.rows() > params.bottom_nodes &&
+         factor_work(last) > kDearFactorWork * static_cast<double>(finest.blocks());
+}
+
+/// What to do where the next lattice does not pay and the last level is dear.
+enum class Rescue : std::uint8_t { Try, Leave };
+
+std::vector<PlainLevel> coarsen_repeatedly(PlainLevel finest, LatticeFrame frame, const MultigridParams& params,
+                                           Rescue rescue) {
   std::vector<PlainLevel> levels;
   levels.push_back(std::move(finest));
   const double cheap = kCheapFactorWork * static_cast<double>(levels.front().pattern.blocks());
@@ -199,11 +259,16 @@ std::vector<PlainLevel> coarsen_repeatedly(PlainLevel finest, LatticeFrame frame
     PlainLevel& fine = levels.back();
     if (levels.size() > 1 && factor_work(fine.pattern) <= cheap) break;
     frame.spacing *= 2;
-    Coarsening coarse = levels.size() == 1 ? coarsen_with_few_copies(fine.nodes, fine.pattern, frame, params)
-                                           : coarsen(fine.nodes, fine.pattern, frame,
-                                                     {params.dropped_weight, params.stiffness_contrast});
-    const bool reduces = static_cast<double>(coarse.nodes.positions.size()) <= kLeastReduction * fine.pattern.rows();
-    if (!reduces && coarse.staying == 0) break;
+    std::optional<Coarsening> found =
+        levels.size() == 1
+            ? coarsen_with_few_copies(fine.nodes, fine.pattern, frame, params)
+            : coarsen(fine.nodes, fine.pattern, frame, {params.dropped_weight, params.stiffness_contrast});
+    if (!pays(*found, fine)) {
+      if (rescue == Rescue::Leave || !is_dear(fine.pattern, levels.front().pattern, params)) break;
+      found = coarsen_further(fine, frame, params);
+      if (!found) break;
+    }
+    Coarsening& coarse = *found;
     fine.prolongation = std::move(coarse.prolongation);
     BlockPattern pattern = galerkin_pattern(fine.pattern, transpose(fine.prolongation), fine.prolongation);
     coarse.nodes.block_stiffness =
@@ -211,6 +276,24 @@ std::vector<PlainLevel> coarsen_repeatedly(PlainLevel finest, LatticeFrame frame
     levels.push_back({std::move(coarse.nodes), std::move(pattern), {}});
   }
   return levels;
+}
+
+/// The levels of a mesh. Where tetrahedra of very different sizes are mixed, as a file may have them, one lattice has
+/// more nodes around the large ones than they have themselves: then each part is coarsened from its own size on.
+std::vector<PlainLevel> find_levels(const TetMesh& mesh, std::span<const double> element_stiffness,
+                                    const BlockPattern& pattern, const MultigridParams& params) {
+  PlainLevel finest{
+      {mesh.nodes, block_stiffness(mesh, element_stiffness, pattern, params.stiffness_contrast), mesh.spacings},
+      pattern,
+      {}};
+  const LatticeFrame frame = finest_frame(mesh);
+  if (mesh.lattice.spacing > 0 || !mesh.spacings.empty())
+    return coarsen_repeatedly(std::move(finest), frame, params, Rescue::Try);
+  std::vector<PlainLevel> levels = coarsen_repeatedly(finest, frame, params, Rescue::Leave);
+  if (!is_dear(levels.back().pattern, pattern, params)) return levels;
+  finest.nodes.spacings = node_spacings(mesh, frame.spacing);
+  std::vector<PlainLevel> by_size = coarsen_repeatedly(std::move(finest), frame, params, Rescue::Try);
+  return factor_work(by_size.back().pattern) < factor_work(levels.back().pattern) ? by_size : levels;
 }
 
 LatticeLevel colored(const PlainLevel& plain, const std::vector<Index>& order, std::vector<Index> color_offsets,
@@ -232,9 +315,7 @@ LatticeHierarchy build_lattice_hierarchy(const TetMesh& mesh, std::span<const do
                                          const BlockPattern& pattern, const MultigridParams& params) {
   CHECK(!mesh.nodes.empty());
   CHECK(pattern.rows() == static_cast<Index>(mesh.nodes.size()));
-  const std::vector<PlainLevel> plain =
-      coarsen_repeatedly({{mesh.nodes, block_stiffness(mesh, element_stiffness, pattern), mesh.spacings}, pattern, {}},
-                         finest_frame(mesh), params);
+  const std::vector<PlainLevel> plain = find_levels(mesh, element_stiffness, pattern, params);
   LatticeHierarchy hierarchy;
   std::vector<std::vector<Index>> orders, color_offsets(plain.size());
   for (std::size_t h = 0; h < plain.size(); ++h) orders.push_back(order_by_color(plain[h].pattern, color_offsets[h]));

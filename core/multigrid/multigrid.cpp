@@ -54,19 +54,25 @@ struct Multigrid::Levels {
       row_of_node[static_cast<std::size_t>(hierarchy.mesh_nodes[row])] = static_cast<Index>(row);
   }
 
-  /// Puts a cycle in double in the place of the float one; false if it is there already or is no better.
+  /// Puts a cycle in double in the place of the float one; false if it was tried already or is no better.
   bool use_double_cycle(const BlockMatrixd& matrix) {
-    if (double_cycle) return false;
-    double_cycle.emplace(hierarchy, params, threads);
-    usable = double_cycle->update(matrix, pinned);
-    return usable;
+    if (double_tried) return false;
+    double_tried = true;
+    if (!double_cycle) double_cycle.emplace(hierarchy, params, threads);
+    in_double = double_cycle->update(matrix, pinned);
+    usable = usable || in_double;
+    return in_double;
   }
+
+  /// For a new matrix: which of the cycles serves must not depend on those before it.
+  void forget_double_cycle() { in_double = double_tried = false; }
 
   MultigridParams params;
   const Threads& threads;
   LatticeHierarchy hierarchy;
   Cycle<float> float_cycle;
-  std::optional<Cycle<double>> double_cycle;  ///< only after the float cycle failed on the present matrix
+  std::optional<Cycle<double>> double_cycle;  ///< made when the float cycle first fails
+  bool in_double = false, double_tried = false;
   std::vector<std::uint8_t> pinned;
   bool usable = false;  ///< the present cycle is positive definite
   ConjugateGradients solver;
@@ -173,7 +179,7 @@ Multigrid& Multigrid::operator=(Multigrid&&) noexcept = default;
 
 void Multigrid::update(const BlockMatrixd& matrix, std::span<const std::uint8_t> pinned) {
   levels_->pinned.assign(pinned.begin(), pinned.end());
-  levels_->double_cycle.reset();
+  levels_->forget_double_cycle();
   levels_->usable = levels_->float_cycle.update(matrix, pinned);
   if (!levels_->usable) levels_->use_double_cycle(matrix);
 }
@@ -185,7 +191,7 @@ SolveReport Multigrid::solve(const BlockMatrixd& matrix, std::span<const Vec3> b
   report.status = SolveStatus::Breakdown;
   if (levels.usable) {
     const Preconditioner preconditioner{[&](const NodeVector<double>& r, double r_norm, NodeVector<double>& z) {
-                                          if (levels.double_cycle)
+                                          if (levels.in_double)
                                             levels.double_cycle->apply(r, r_norm, z);
                                           else
                                             levels.float_cycle.apply(r, r_norm, z);
@@ -194,7 +200,7 @@ SolveReport Multigrid::solve(const BlockMatrixd& matrix, std::span<const Vec3> b
     report = levels.solver.solve(matrix, b, x, {tolerance, absolute_tolerance, max_iterations, levels.params.method},
                                  preconditioner);
   }
-  report.double_cycle = levels.double_cycle.has_value();
+  report.double_cycle = levels.in_double;
   return report;
 }
 
@@ -211,7 +217,7 @@ bool Multigrid::update_in_float(std::span<const std::uint8_t> pinned, bool keep_
   levels.usable = false;
   if (levels.hierarchy.levels.size() < 2) return false;
   levels.pinned.assign(pinned.begin(), pinned.end());
-  levels.double_cycle.reset();
+  levels.forget_double_cycle();
   levels.eliminate(pinned);
   if (keep_coarse) return levels.float_cycle.update_finest_in_place();
   return levels.float_cycle.update_in_place(pinned);

@@ -198,6 +198,39 @@ TEST(GluePoints, StandForAllOfTheSurfaceEvenlyHoweverItIsDivided) {
   }
 }
 
+TEST(GluePoints, StandForTheLongStripsOfATubeToo) {
+  // 64 sides of 2 m x 2 mm: rows of equal triangles as small as the spacing asks would be 70,000,000.
+  const int sides = 64;
+  const double radius = 0.02, length = 2, spacing = 0.0053;
+  const TetMesh mesh = kuhn_bar({20, 2, 2}, Vec3(length, 0.05, 0.05));
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  std::vector<Index> all;
+  for (int k = 0; k < sides; ++k) {
+    const double turn = 2 * M_PI * k / sides;
+    for (const double x : {0.0, length})
+      positions.emplace_back(x, 0.025 + radius * std::cos(turn), 0.025 + radius * std::sin(turn));
+    const Index a = 2 * k, b = 2 * ((k + 1) % sides);
+    triangles.push_back({a, a + 1, b});
+    triangles.push_back({b, a + 1, b + 1});
+    all.insert(all.end(), {a, a + 1});
+  }
+  const Embedding embedding =
+      embed_points(positions, std::vector<Vec3>(positions.size(), Vec3::UnitY()), mesh, Threads(1));
+  double area = 0, largest = 0, moment = 0;
+  for (const GluePoint& point : make_glue_points(positions, triangles, all, mesh, embedding, spacing)) {
+    area += point.area;
+    largest = std::max(largest, point.area);
+    const Tet& tet = mesh.tets[static_cast<std::size_t>(point.element)];
+    for (std::size_t k = 0; k < 4; ++k)
+      moment += point.area * point.weights[k] * mesh.nodes[static_cast<std::size_t>(tet[k])].x();
+  }
+  const double side = 2 * radius * std::sin(M_PI / sides);
+  EXPECT_NEAR(area, sides * side * length, 1e-9);
+  EXPECT_NEAR(moment / area, length / 2, 1e-9);
+  EXPECT_LT(largest, 1.5 * spacing * spacing);
+}
+
 TEST(GluePoints, AVertexTakesTheThirdOfItsTriangles) {
   const PlainCube cube;
   for (const double spacing : {5.0, 0.1}) {
