@@ -21,13 +21,21 @@ void place(DisplayImage& sheet, const DisplayImage& picture, int x, int y) {
   }
 }
 
+int sheet_columns(std::size_t pictures, const SheetStyle& style) {
+  CHECK(pictures > 0U);
+  CHECK(style.columns > 0);
+  return std::min(style.columns, static_cast<int>(pictures));
+}
+
 }  // namespace
 
+int sheet_cell_width(std::size_t pictures, const SheetStyle& style) {
+  const int columns = sheet_columns(pictures, style);
+  return std::max(1, (style.width - (columns + 1) * kGap) / columns);
+}
+
 DisplayImage contact_sheet(const std::vector<SheetPicture>& pictures, const SheetStyle& style) {
-  CHECK(!pictures.empty());
-  CHECK(style.columns > 0);
-  const int columns = std::min(style.columns, static_cast<int>(pictures.size()));
-  const int cell = std::max(1, (style.width - (columns + 1) * kGap) / columns);
+  const int columns = sheet_columns(pictures.size(), style), cell = sheet_cell_width(pictures.size(), style);
   std::vector<DisplayImage> small;
   for (const SheetPicture& one : pictures) {
     CHECK(one.picture.width == pictures.front().picture.width);

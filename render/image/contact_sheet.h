@@ -1,6 +1,7 @@
 /// Many small pictures on one, with a line under each.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,11 @@ struct SheetStyle {
   std::string title;  ///< above the pictures; empty: none
 };
 
-/// Row by row in the order given. At least one picture; all of one size.
+/// Width in pixels that a sheet of so many pictures has for each.
+int sheet_cell_width(std::size_t pictures, const SheetStyle& style);
+
+/// Row by row in the order given. Pictures already reduced to sheet_cell_width give the same sheet. At least one
+/// picture; all of one size.
 DisplayImage contact_sheet(const std::vector<SheetPicture>& pictures, const SheetStyle& style);
 
 }  // namespace softreel

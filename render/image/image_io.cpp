@@ -23,25 +23,20 @@
 #include "core/base/error.h"
 #include "render/image/image_library_versions.h"
 #include "render/image/png_file.h"
+#include "render/image/radiance_file.h"
+#include "render/image/unreadable_picture.h"
 #include "render/image/view_transform.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_HDR
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_PNG
+#define STBI_NO_LINEAR
 #include <stb/stb_image.h>
 
 namespace softreel {
 
 namespace {
-
-Error unreadable(const std::string& path, const std::string& reason, const char* accepted) {
-  return input_error(
-      fmt::format("{}: cannot be read: {}.\n"
-                  "  Accepted: {}. Check the path, or save the picture again from the program that made it.",
-                  path, reason, accepted));
-}
 
 /// Collects what OpenEXR writes.
 class MemoryStream : public Imf::OStream {
@@ -112,8 +107,9 @@ Image whole_picture(Image image, const std::string& path) {
   constexpr double kMostPixels = 1 << 28;  // a small file may claim any size
   const double pixels = static_cast<double>(image.full_width) * image.full_height;
   if (image.full_width < 1 || image.full_height < 1 || pixels > kMostPixels)
-    throw unreadable(path, fmt::format("its display window has {} x {} pixels", image.full_width, image.full_height),
-                     "an EXR of at most 268 million pixels");
+    throw unreadable_picture(path,
+                             fmt::format("its display window has {} x {} pixels", image.full_width, image.full_height),
+                             "an EXR of at most 268 million pixels");
   if (image.left == 0 && image.top == 0 && image.width == image.full_width && image.height == image.full_height)
     return image;
   Image whole{image.full_width, image.full_height, {}};
@@ -133,7 +129,7 @@ Image whole_picture(Image image, const std::string& path) {
 EnvironmentImage from_channels(const Image& image, const std::string& path) {
   const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
   if (r == nullptr || g == nullptr || b == nullptr)
-    throw unreadable(path, "it lacks one of the channels R, G, B", "an EXR with colour channels");
+    throw unreadable_picture(path, "it lacks one of the channels R, G, B", "an EXR with colour channels");
   EnvironmentImage out{image.width, image.height, {}};
   out.pixels.reserve(r->pixels.size());
   for (std::size_t k = 0; k < r->pixels.size(); ++k) out.pixels.emplace_back(r->pixels[k], g->pixels[k], b->pixels[k]);
@@ -142,23 +138,12 @@ EnvironmentImage from_channels(const Image& image, const std::string& path) {
 
 using StbPixels = std::unique_ptr<void, decltype(&stbi_image_free)>;
 
-EnvironmentImage read_hdr(const std::string& path) {
-  int width = 0, height = 0, components = 0;
-  float* data = stbi_loadf(path.c_str(), &width, &height, &components, 3);
-  const StbPixels owner(data, &stbi_image_free);
-  if (data == nullptr) throw unreadable(path, stbi_failure_reason(), "a Radiance HDR picture");
-  EnvironmentImage image{width, height, {}};
-  for (std::size_t k = 0; k < pixel_count(width, height); ++k)
-    image.pixels.emplace_back(data[3 * k], data[3 * k + 1], data[3 * k + 2]);
-  return image;
-}
-
 /// 16 bits a value, as stored: libpng's simple reader would take them through the file's gamma, which data do not have.
 TexturePicture read_png_16(const std::string& path) {
   int width = 0, height = 0, components = 0;
   stbi_us* data = stbi_load_16(path.c_str(), &width, &height, &components, 3);
   const StbPixels owner(data, &stbi_image_free);
-  if (data == nullptr) throw unreadable(path, stbi_failure_reason(), "a complete PNG picture");
+  if (data == nullptr) throw unreadable_picture(path, stbi_failure_reason(), "a complete PNG picture");
   TexturePicture picture{width, height, {}, 16};
   for (std::size_t k = 0; k < pixel_count(width, height); ++k)
     picture.pixels.push_back(Vec3f(data[3 * k], data[3 * k + 1], data[3 * k + 2]) / 65535);
@@ -170,7 +155,7 @@ DisplayImage read_stored(const std::string& path, const char* kind) {
   int width = 0, height = 0, components = 0;
   stbi_uc* data = stbi_load(path.c_str(), &width, &height, &components, 3);
   const StbPixels owner(data, &stbi_image_free);
-  if (data == nullptr) throw unreadable(path, stbi_failure_reason(), kind);
+  if (data == nullptr) throw unreadable_picture(path, stbi_failure_reason(), kind);
   return {width, height, {data, data + 3 * pixel_count(width, height)}};
 }
 
@@ -232,7 +217,7 @@ DisplayImage read_png(const std::string& path) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   if (png_image_begin_read_from_file(&header, path.c_str()) == 0)
-    throw unreadable(path, header.message, "a PNG picture");
+    throw unreadable_picture(path, header.message, "a PNG picture");
   const bool has_alpha = (header.format & PNG_FORMAT_FLAG_ALPHA) != 0;
   header.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // as those of 8 bits, where the file names no gamma
   header.format = has_alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
@@ -240,7 +225,7 @@ DisplayImage read_png(const std::string& path) {
   const std::size_t pixels = pixel_count(image.width, image.height), values = has_alpha ? 4 : 3;
   image.pixels.resize(values * pixels);
   if (png_image_finish_read(&header, nullptr, image.pixels.data(), 0, nullptr) == 0)
-    throw unreadable(path, header.message, "a complete PNG picture");
+    throw unreadable_picture(path, header.message, "a complete PNG picture");
   if (!has_alpha) return image;
   image.alpha.resize(pixels);
   for (std::size_t k = 0; k < pixels; ++k) {
@@ -274,7 +259,7 @@ Image read_exr(const std::string& path) {
     file.readPixels(window.min.y, window.max.y);
     return image;
   } catch (const std::exception& failure) {
-    throw unreadable(path, failure.what(), "a scan-line EXR picture");
+    throw unreadable_picture(path, failure.what(), "a scan-line EXR picture");
   }
 }
 
@@ -293,10 +278,10 @@ TexturePicture read_texture_picture(const std::string& path) {
     return stbi_is_16_bit(path.c_str()) != 0 ? read_png_16(path)
                                              : of_display(read_stored(path, "a complete PNG picture"));
   if (end == "jpg" || end == "jpeg") return of_display(read_stored(path, "a JPEG picture"));
-  if (end == "hdr") return of_numbers(read_hdr(path));
+  if (end == "hdr") return of_numbers(read_radiance(path));
   if (end != "exr")
-    throw unreadable(path, fmt::format("'.{}' names no known format", end),
-                     "files ending in .exr, .hdr, .png, .jpg, .jpeg");
+    throw unreadable_picture(path, fmt::format("'.{}' names no known format", end),
+                             "files ending in .exr, .hdr, .png, .jpg, .jpeg");
   Image image = whole_picture(read_exr(path), path);
   if (const Channel* grey = image.find("Y"); grey != nullptr && image.find("R") == nullptr) {
     const std::vector<float> values = grey->pixels;
@@ -311,14 +296,14 @@ EnvironmentImage read_environment(const std::string& path) {
   if (end == "exr")
     image = from_channels(whole_picture(read_exr(path), path), path);
   else if (end == "hdr")
-    image = read_hdr(path);
+    image = read_radiance(path);
   else if (end == "png")
     image = from_display(read_png(path));
   else if (end == "jpg" || end == "jpeg")
     image = from_display(read_stored(path, "a JPEG picture"));
   else
-    throw unreadable(path, fmt::format("'.{}' names no known format", end),
-                     "files ending in .exr, .hdr, .png, .jpg, .jpeg");
+    throw unreadable_picture(path, fmt::format("'.{}' names no known format", end),
+                             "files ending in .exr, .hdr, .png, .jpg, .jpeg");
   require_finite(image, path);
   return image;
 }

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 
 /// Runs one input. The first byte chooses the format, the file's bytes follow. Aborts where a promise is broken: bytes
-/// become a sound mesh or one Error of kind Input, whose message is short.
+/// become a sound mesh or picture, or one Error of kind Input, whose message is short.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace softreel::fuzz {

@@ -6,8 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "core/base/error.h"
 #include "core/base/timer.h"
 #include "render/image/contact_sheet.h"
+#include "render/image/image_io.h"
+#include "render/image/reduce.h"
 
 namespace softreel {
 namespace {
@@ -24,10 +27,36 @@ StageKey sheet_key(const Shot& shot, const std::vector<int>& frames, int columns
   return key.key();
 }
 
-std::string title_of(const Shot& shot, const DisplayImage& picture) {
+std::string title_of(const Shot& shot, int width, int height) {
   const ShotSettings& settings = shot.settings;
   return fmt::format("{}    frames {} to {}, {} a second    {} x {}", settings.name, settings.first_frame,
-                     settings.last_frame, settings.fps, picture.width, picture.height);
+                     settings.last_frame, settings.fps, width, height);
+}
+
+/// Never holds more than one frame at its full size.
+DisplayImage sheet_of(const Shot& shot, const std::vector<int>& frames, int columns, const Outputs& outputs,
+                      const RunContext& context) {
+  SheetStyle style{.columns = columns, .title = {}};
+  const int cell = sheet_cell_width(frames.size(), style);
+  std::vector<SheetPicture> pictures;
+  int width = 0, height = 0;
+  for (const int frame : frames) {
+    context.stop_if_cancelled();
+    const std::string path = outputs.frame_path(frame, "png");
+    const DisplayImage whole = over_grey(read_png(path));
+    if (pictures.empty()) {
+      width = whole.width;
+      height = whole.height;
+    }
+    if (whole.width != width || whole.height != height)
+      throw input_error(
+          fmt::format("{}: has {} x {} pixels, the frames before it {} x {}.\n"
+                      "  Accepted: frames of one size. Delete it and render it again.",
+                      path, whole.width, whole.height, width, height));
+    pictures.push_back({reduced(whole, cell), fmt::format("frame {}", frame)});
+  }
+  style.title = title_of(shot, width, height);
+  return contact_sheet(pictures, style);
 }
 
 }  // namespace
@@ -48,13 +77,7 @@ std::string make_sheet(const Shot& shot, const std::vector<int>& frames, int col
   if (outputs.is_done(path, key)) return path;
   const ScopedStage stage(context.times, "sheet");
   const auto start = std::chrono::steady_clock::now();
-  std::vector<SheetPicture> pictures;
-  for (const int frame : frames) {
-    context.stop_if_cancelled();
-    pictures.push_back({over_grey(read_png(outputs.frame_path(frame, "png"))), fmt::format("frame {}", frame)});
-  }
-  const SheetStyle style{.columns = columns, .title = title_of(shot, pictures.front().picture)};
-  const std::vector<std::uint8_t> bytes = encode_png(contact_sheet(pictures, style));
+  const std::vector<std::uint8_t> bytes = encode_png(sheet_of(shot, frames, columns, outputs, context));
   outputs.write(path, key, bytes, seconds_since(start));
   return path;
 }

@@ -143,6 +143,7 @@ class ShadowLayers {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, texture_, 0, layer);
     glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);  // else some drivers take a framebuffer without colours for incomplete
     glViewport(0, 0, kShadowSize, kShadowSize);
     glClear(GL_DEPTH_BUFFER_BIT);
   }

@@ -222,8 +222,9 @@ void light_surface(vec3 albedo) {
   float inward = sqrt(max(1.0 - (1.0 - nv * nv) * glass_bend, 0.0));
   through = clear * (1.0 - mirrored) * exp(-absorption * (chord * inward));
   float varnish = coat * mix(coat_f0, 1.0, rest_of(nv));
-  // What fibres reflect of an even sky, within 0.06 of render/pathtrace/sheen.h.
-  float cover = 0.17 / sheen_exponent + 0.73 * pow(1.0 - nv, 1.8 + 0.13 * sheen_exponent);
+  // What fibres reflect of an even sky, within 0.06 of render/pathtrace/sheen.h. nv may be rounded to above 1, where
+  // the power is undefined.
+  float cover = 0.17 / sheen_exponent + 0.73 * pow(max(1.0 - nv, 0.0), 1.8 + 0.13 * sheen_exponent);
   vec3 under = (1.0 - varnish) * mix(vec3(1.0), coat_color, coat) * (1.0 - cover * sheen_color);
   top_gloss += varnish * environment(mix(r.y, 0.5 * n.y, sqrt(coat_alpha))) + cover * sheen_color * mix(lower, upper, 0.5 + 0.5 * n.y);
   lit_diffuse *= under;

@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "render/preview/depth_range.h"
 #include "render/preview/egl/egl_context.h"
 #include "render/preview/egl/gl_objects.h"
 #include "render/preview/egl/gpu_meshes.h"
@@ -40,33 +41,6 @@ Eigen::Matrix4f clip_from_world(const CameraFrame& camera, float near, float far
   Eigen::Matrix4f shift = Eigen::Matrix4f::Identity();
   shift.block<3, 1>(0, 3) = -camera.position;
   return clip * shift;
-}
-
-/// Distances along the view that hold all that is drawn.
-struct DepthRange {
-  float near = 0, far = 0;
-};
-
-/// With a little air. A body may be close beside a ground that goes on for kilometres.
-DepthRange depth_range(const std::vector<MotionMesh>& meshes, const MotionMesh& ground, const GizmoMarks& marks,
-                       const CameraFrame& camera) {
-  float near = std::numeric_limits<float>::infinity(), far = 1;
-  const auto add = [&](const Vec3f& p, bool of_ground = false) {
-    const float depth = (p - camera.position).dot(camera.forward);
-    far = std::max(far, depth);
-    if (depth > 0 && !of_ground) near = std::min(near, depth);
-  };
-  for (const MotionMesh& mesh : meshes)
-    for (const Vec3f& p : mesh.times.back().positions) add(p);
-  if (!ground.times.empty())
-    for (const Vec3f& p : ground.times.back().positions) add(p, true);
-  for (const GizmoMarks::Dot& dot : marks.dots) add(dot.at);
-  for (const GizmoMarks::Line& line : marks.lines) {
-    add(line.from);
-    add(line.to);
-  }
-  far *= 1.01f;
-  return {std::clamp(0.5f * near, 1e-5f * far, 1e-3f * far), far};
 }
 
 /// The environment as the shaders know it; an image is averaged around pole, horizon and pole.

@@ -83,6 +83,24 @@ TEST(ContactSheet, HoldsEveryPictureOnceInOrder) {
   EXPECT_LE(sheet.width, 600);
 }
 
+TEST(ContactSheet, IsTheSameOfPicturesThatWereReducedToItsCells) {
+  for (const std::size_t count : {1, 2, 7})
+    for (const int width : {150, 600, 5000}) {
+      const SheetStyle style{.columns = 3, .width = width, .title = "t"};
+      std::vector<SheetPicture> whole, small;
+      for (std::size_t k = 0; k < count; ++k) {
+        DisplayImage picture = filled(321, 179, 0);
+        for (std::size_t p = 0; p < picture.pixels.size(); ++p)
+          picture.pixels[p] = static_cast<std::uint8_t>((p * p + 31 * k) >> 3);
+        small.push_back({reduced(picture, sheet_cell_width(count, style)), "x"});
+        whole.push_back({std::move(picture), "x"});
+      }
+      const DisplayImage sheet = contact_sheet(whole, style);
+      EXPECT_EQ(contact_sheet(small, style).pixels, sheet.pixels) << count << " on " << width;
+      EXPECT_LE(small[0].picture.width, std::max(1, width / std::min(3, static_cast<int>(count))));
+    }
+}
+
 TEST(ContactSheet, OnePictureMakesASheetOfItsOwnWidth) {
   const DisplayImage sheet = contact_sheet({{filled(100, 50, 200), ""}}, {});
   EXPECT_LT(sheet.width, 150);

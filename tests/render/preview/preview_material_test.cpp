@@ -1,4 +1,5 @@
 /// Materials in drawn previews: what they let through, reflect and catch.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -114,6 +115,22 @@ TEST_F(PreviewMaterial, FibresReflectAnEvenSkyAsThePathTracersDo) {
       EXPECT_NEAR(at.y(), 0.3f * at.x(), 0.01f) << x;
     }
   }
+}
+
+TEST_F(PreviewMaterial, FibresHaveNoHolesWhereTheyFaceTheCamera) {
+  // From the middle of a ball all of it does: the cosines are 1 but for rounding, to either side.
+  Scene scene = scene_in_sky(1);
+  Appearance velvet = matte(0.5f);
+  velvet.roughness = 1;
+  velvet.sheen = 1;
+  velvet.sheen_color = Vec3f::Ones();
+  scene.meshes = {sphere(Vec3f(0.3f, 0.2f, 0.1f), 1, velvet, 48)};
+  scene.camera.position = Vec3f(0.3f, 0.2f, 0.1f);
+  scene.camera.target = Vec3f(-1, 0.5f, -2);
+  const DisplayImage image = draw(scene);
+  const auto [least, most] = std::minmax_element(image.pixels.begin(), image.pixels.end());
+  EXPECT_GT(*least, 100);
+  EXPECT_LE(*most - *least, 4);
 }
 
 TEST_F(PreviewMaterial, ACatcherLeavesTheShadowInTheAlphaAndNothingElse) {

@@ -61,6 +61,20 @@ TEST(EglPreview, DrawsABodyThatIsCloseBeforeAGroundOfKilometres) {
   EXPECT_GT(pixel_of(image, scene.camera, Vec3f::Zero()).minCoeff(), 250);
 }
 
+TEST(EglPreview, DrawsTheGroundRightBeforeALowCamera) {
+  std::string reason;
+  const std::unique_ptr<Preview> preview = egl_preview_or_null(reason);
+  if (preview == nullptr) GTEST_SKIP() << reason;
+  Scene scene = glowing_ball();
+  scene.camera.position = Vec3f(0, 0.05f, 4);
+  scene.camera.target = Vec3f(0, 0.05f, 0);
+  scene.ground.emplace();
+  scene.ground->size = 1000;
+  scene.ground->appearance = scene.meshes[0].appearance;
+  const DisplayImage image = preview->draw(scene, 64, 64, ViewTransform::Raw, 0);
+  for (const int y : {40, 50, 63}) EXPECT_GT(pixel_at(image, 2, y).minCoeff(), 250) << y;
+}
+
 TEST(EglPreview, DrawsTheSkyAsThePathTracerSeesIt) {
   std::string reason;
   const std::unique_ptr<Preview> preview = egl_preview_or_null(reason);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 #include <sstream>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -97,6 +98,36 @@ TEST(Parts, PreviewLoadsEglInsteadOfEmbree) {
   EXPECT_TRUE(mapped.has("libEGL")) << mapped.outcome.err;
   EXPECT_FALSE(mapped.has("libembree"));
   EXPECT_FALSE(mapped.has("libassimp"));
+}
+
+TEST(Parts, PreviewSaysWhichLibraryOfOpenGlIsMissing) {
+  const std::string folder = shot_folder("parts_no_gl");
+  for (const std::vector<std::string>& missing :
+       {std::vector<std::string>{"libEGL.so.1"}, std::vector<std::string>{"libGL.so.1", "libOpenGL.so.0"}}) {
+    const std::string libraries = new_folder("parts_no_" + missing[0]);
+    for (const std::string& library : missing) write_text(libraries + "/" + library, "");  // which no loader takes
+    const Outcome outcome =
+        run(fmt::format("export LD_LIBRARY_PATH={1}:$LD_LIBRARY_PATH; softreel preview {0}/shot.toml --output {0}/out "
+                        "--frames 1 --quiet",
+                        folder, libraries));
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_NE(outcome.err.find("The preview cannot draw: a library cannot be loaded"), std::string::npos)
+        << outcome.err;
+    for (const std::string& library : missing) EXPECT_NE(outcome.err.find(library), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("Install libegl1, libgl1 and libgl1-mesa-dri"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Parts, PreviewNamesTheErrorOfAContextThatItDoesNotGet) {
+  const std::string folder = shot_folder("parts_old_gl");
+  const Outcome outcome =
+      run(fmt::format("export MESA_GL_VERSION_OVERRIDE=2.1; softreel preview {0}/shot.toml --output {0}/out --frames 1 "
+                      "--quiet",
+                      folder));
+  const std::string refusal = "no OpenGL 3.3 context (EGL error ";
+  if (outcome.err.find(refusal) == std::string::npos) GTEST_SKIP() << "no Mesa alone here: " << outcome.err;
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err.find(refusal + "0x3000)"), std::string::npos) << "that is success: " << outcome.err;
 }
 
 #if SOFTREEL_HAS_OPENVDB
