@@ -1,5 +1,7 @@
 #include "render/pathtrace/bsdf.h"
 
+#include <utility>
+
 #include "render/pathtrace/sampling.h"
 
 namespace softreel {
@@ -33,21 +35,29 @@ bool bends_light(float ior) {
 
 }  // namespace
 
-AlbedoTables AlbedoTables::of(const Appearance& appearance) {
+AlbedoTables AlbedoTables::of(const Appearance& appearance, std::shared_ptr<const TopLayers> top) {
   AlbedoTables tables;
-  tables.top = TopLayers::make(appearance);
+  tables.top = std::move(top);
   const float alpha = appearance.roughness * appearance.roughness;
-  const bool glass = (1 - appearance.metallic) * appearance.transmission > 0;
   const float glass_alpha = bends_light(appearance.ior) ? alpha : 0;
   if (tables.top)
     tables.reflection = AlbedoTable::of_reflection(alpha, [&](float mu) { return tables.top->passed(mu); });
-  else if (glass || appearance.specular > 0 || appearance.metallic > 0 || appearance.subsurface > 0)
+  else if (has_reflection(appearance))
     tables.reflection = AlbedoTable::of_reflection(alpha);
-  if (glass) {
+  if (has_glass(appearance)) {
     tables.glass_outside = AlbedoTable::of_glass(glass_alpha, appearance.ior);
     tables.glass_inside = AlbedoTable::of_glass(glass_alpha, 1 / appearance.ior);
   }
   return tables;
+}
+
+bool AlbedoTables::has_glass(const Appearance& appearance) {
+  return (1 - appearance.metallic) * appearance.transmission > 0;
+}
+
+bool AlbedoTables::has_reflection(const Appearance& appearance) {
+  return TopLayers::has_any(appearance) || has_glass(appearance) || appearance.specular > 0 ||
+         appearance.metallic > 0 || appearance.subsurface > 0;
 }
 
 AlbedoTables AlbedoTables::between(const AlbedoTables& a, const AlbedoTables& b, float share) {

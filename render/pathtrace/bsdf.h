@@ -31,11 +31,16 @@ struct Subsurface {
 
 /// What of a material is slow to prepare. It depends on roughness, index and layers, not on the base's colour.
 struct AlbedoTables {
-  AlbedoTable reflection;                   ///< filled unless the appearance is only diffuse
+  AlbedoTable reflection;                   ///< filled unless the appearance is only diffuse: has_reflection
   AlbedoTable glass_outside, glass_inside;  ///< filled for glass
   std::shared_ptr<const TopLayers> top;     ///< null: none
 
-  static AlbedoTables of(const Appearance& appearance);
+  static AlbedoTables of(const Appearance& appearance) { return of(appearance, TopLayers::make(appearance)); }
+  /// top: as TopLayers::make(appearance) makes them, which is slow and the same for every roughness of the base.
+  static AlbedoTables of(const Appearance& appearance, std::shared_ptr<const TopLayers> top);
+  /// What is filled.
+  static bool has_reflection(const Appearance& appearance);
+  static bool has_glass(const Appearance& appearance);
   /// Between those of two appearances that differ in roughness only. share: 0 gives a, bit for bit.
   static AlbedoTables between(const AlbedoTables& a, const AlbedoTables& b, float share);
 };

@@ -68,7 +68,7 @@ Vec3f valid_normal(const Vec3f& normal, const Vec3f& shading, const Vec3f& geome
   return valid;
 }
 
-ColoredSurface::ColoredSurface(const MotionMesh& mesh, float least_roughness)
+ColoredSurface::ColoredSurface(const MotionMesh& mesh, float least_roughness, AlbedoCache& tables)
     : mesh_(mesh), least_roughness_(least_roughness) {
   const SurfaceColoring& coloring = mesh.coloring;
   const std::size_t vertices = mesh.times.front().positions.size();
@@ -79,16 +79,16 @@ ColoredSurface::ColoredSurface(const MotionMesh& mesh, float least_roughness)
     CHECK(coloring.triangles.size() == mesh.triangles.size());
     for (const Vec2f& c : coloring.coordinates) coordinates_.push_back(maps.scale.cwiseProduct(c) + maps.offset);
   }
-  prepare_tables();
+  prepare_tables(tables);
   if (maps.normal) prepare_tangents();
 }
 
-void ColoredSurface::prepare_tables() {
+void ColoredSurface::prepare_tables(AlbedoCache& cache) {
   Appearance appearance = mesh_.appearance, blurred = appearance;
-  plain_ = AlbedoTables::of(appearance);
+  plain_ = cache.of(appearance);
   blurred.roughness = std::max(appearance.roughness, least_roughness_);
   blurred.coat_roughness = std::max(appearance.coat_roughness, least_roughness_);
-  plain_blurred_ = AlbedoTables::of(blurred);
+  plain_blurred_ = cache.of(blurred);
   const bool coat_differs = appearance.coat > 0 && blurred.coat_roughness != appearance.coat_roughness;
   const auto& roughness = mesh_.coloring.maps.roughness;
   if (!roughness) return;
@@ -100,8 +100,8 @@ void ColoredSurface::prepare_tables() {
   roughness_step_ = steps > 0 ? range / static_cast<float>(steps) : 1.0f;
   for (int k = 0; k <= steps; ++k) {
     appearance.roughness = blurred.roughness = first_roughness_ + static_cast<float>(k) * roughness_step_;
-    tables_.push_back(AlbedoTables::of(appearance));
-    if (coat_differs) blurred_tables_.push_back(AlbedoTables::of(blurred));
+    tables_.push_back(cache.of(appearance));
+    if (coat_differs) blurred_tables_.push_back(cache.of(blurred));
   }
 }
 

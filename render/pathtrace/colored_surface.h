@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "render/pathtrace/albedo_cache.h"
 #include "render/pathtrace/bsdf.h"
 #include "render/pathtrace/surface_point.h"
 #include "render/pathtrace/texture_lookup.h"
@@ -13,15 +14,15 @@ namespace softreel {
 /// A mesh with a coloring, made ready for hits. Borrows the mesh. Thread-safe.
 class ColoredSurface {
  public:
-  /// least_roughness: of what is seen by way of a wide scattering.
-  ColoredSurface(const MotionMesh& mesh, float least_roughness);
+  /// least_roughness: of what is seen by way of a wide scattering. tables: copied from.
+  ColoredSurface(const MotionMesh& mesh, float least_roughness, AlbedoCache& tables);
 
   /// The material where `ray` hit; point.shading_normal is turned as normal and bump maps say. width: diameter of the
   /// ray's cone there, m; blurred: seen by way of a wide scattering.
   Bsdf at(const RayHit& hit, const Ray& ray, float width, bool blurred, SurfacePoint& point) const;
 
  private:
-  void prepare_tables();
+  void prepare_tables(AlbedoCache& cache);
   void prepare_tangents();
   void join_tangent_corners();
   std::vector<Vec3f> tangents_of(const MotionMesh::Time& time) const;

@@ -1,5 +1,6 @@
 #include "render/pathtrace/emitting_meshes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/pathtrace/sampling.h"
@@ -9,8 +10,17 @@ namespace softreel {
 
 namespace {
 
-/// Shadow rays end this share before the light, so that they do not find it in their way.
+/// Shadow rays end this share before the light, so that they do not find it in their way,
 constexpr float kShortened = 1 - 1e-4f;
+/// and by the round-off of its coordinates, a few units in the last place of the largest: far from the origin, light
+/// that is near would else be in its own way.
+constexpr float kRoundOff = 4e-7f;
+
+/// Of a shadow ray to a point of a light.
+float distance_before(const Vec3f& point, const Vec3f& receiver, float distance) {
+  const float largest = std::max(point.cwiseAbs().maxCoeff(), receiver.cwiseAbs().maxCoeff());
+  return std::max(0.0f, distance * kShortened - kRoundOff * largest);
+}
 
 /// Over all times of the shutter.
 EmitterBounds bounds_of(const MotionMesh& mesh, const Triangle& triangle, float radiance) {
@@ -71,13 +81,14 @@ bool EmittingMeshes::sample(const TreeReceiver& receiver, float time, float choi
   const Corners p = hit_corners(mesh, hit, ray);
   const Vec3f normal = (p[1] - p[0]).cross(p[2] - p[0]);  // as long as twice the area
   const float root = std::sqrt(u.x());
-  const Vec3f to = (1 - root) * p[0] + root * (1 - u.y()) * p[1] + root * u.y() * p[2] - receiver.position;
+  const Vec3f point = (1 - root) * p[0] + root * (1 - u.y()) * p[1] + root * u.y() * p[2];
+  const Vec3f to = point - receiver.position;
   const float distance = to.norm();
   sample.direction = to / distance;
   const float projected = -0.5f * normal.dot(sample.direction);  // area as seen from the receiver
   if (!(projected > 0)) return false;
   sample.pdf = probability * distance * distance / projected;
-  sample.distance = distance * kShortened;
+  sample.distance = distance_before(point, receiver.position, distance);
   sample.radiance = mesh.appearance.emission;
   return true;
 }

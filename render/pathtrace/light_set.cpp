@@ -1,5 +1,6 @@
 #include "render/pathtrace/light_set.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -15,6 +16,8 @@ namespace {
 /// More lamps than these are chosen from by a tree: by steps that grow with the logarithm of their number. For few,
 /// one rough irradiance each is the better choice and as quick.
 constexpr std::size_t kFewLamps = 16;
+/// Of many lamps near one ray, as many are told from the others by the tree.
+constexpr std::size_t kMostPassed = 64;
 /// Lights whose importance is not computed twice.
 constexpr std::size_t kKeptImportances = 8;
 
@@ -198,6 +201,24 @@ bool LightSet::sample_from(std::size_t k, const Receiver& receiver, float choice
   return true;
 }
 
+/// visit(lamp) of all lamps that a ray may meet and some others, in the order of their numbers, in which their light is
+/// added up: the bits are those of asking them all.
+template <typename Visit>
+void LightSet::for_lamps_near(const Vec3f& position, const Vec3f& direction, float distance, const Visit& visit) const {
+  std::array<Index, kMostPassed> passed{};
+  std::size_t count = 0;
+  lamp_tree_.visit_along(position, direction, distance, [&](Index lamp) {
+    if (count < kMostPassed) passed[count] = lamp;
+    ++count;
+  });
+  if (lamp_tree_.empty() || count > kMostPassed) {
+    for (std::size_t k = 0; k < lamps_.size(); ++k) visit(k);
+    return;
+  }
+  std::sort(passed.begin(), passed.begin() + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t j = 0; j < count; ++j) visit(static_cast<std::size_t>(passed[j]));
+}
+
 Vec3f LightSet::area_lights_along(const Vec3f& position, const Vec3f& direction, float distance,
                                   const RayOrigin& origin) const {
   Vec3f sum = Vec3f::Zero();
@@ -212,7 +233,8 @@ Vec3f LightSet::area_lights_along(const Vec3f& position, const Vec3f& direction,
     }
     sum += weight * light.radiance().cwiseProduct(transmittance(origin.absorption, at));
   };
-  for (std::size_t k = 0; k < lamps_.size(); ++k) std::visit([&](const auto& light) { add(k, light); }, lamps_[k]);
+  for_lamps_near(position, direction, distance,
+                 [&](std::size_t k) { std::visit([&](const auto& light) { add(k, light); }, lamps_[k]); });
   return sum;
 }
 

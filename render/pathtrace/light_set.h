@@ -77,6 +77,8 @@ class LightSet {
   std::size_t environment_place() const { return emitter_place() + (emitters_.empty() ? 0 : 1); }
   bool sample_from(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
                    bool& point_like) const;
+  template <typename Visit>
+  void for_lamps_near(const Vec3f& position, const Vec3f& direction, float distance, const Visit& visit) const;
   bool sample_lamps(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample) const;
   bool sample_sun(const Sun& sun, const Vec2f& u, LightSample& sample) const;
   /// Rough irradiance of light k at a receiver.

@@ -70,7 +70,7 @@ LightTree::LightTree(const std::vector<EmitterBounds>& emitters) : trails_(emitt
   build(order, 0, order.size(), emitters, 0, 0);
 }
 
-/// Halves the emitters at the median along the longest axis of their middles: no tree is deeper than 32.
+/// Halves the emitters at the median along the longest axis of their middles: no tree is deeper than kMostDepth.
 Index LightTree::build(std::vector<Index>& order, std::size_t begin, std::size_t end,
                        const std::vector<EmitterBounds>& emitters, std::uint64_t trail, int depth) {
   const auto at = [&](std::size_t k) -> const EmitterBounds& { return emitters[static_cast<std::size_t>(order[k])]; };
@@ -122,6 +122,15 @@ float LightTree::importance(const Node& node, const TreeReceiver& receiver) {
   const float facing = receiver.both_sides ? std::abs(cos_in) : cos_in;
   const float received = cos_less(sine_of(facing), facing, sin_extent, cos_extent);
   return received > 0 ? value * received : 0.0f;
+}
+
+/// With a margin far above the rounding here and in the emitters' own intersections.
+bool LightTree::may_meet(const Node& node, const Vec3f& origin, const Vec3f& direction, float length) {
+  const Vec3f to = node.center - origin;
+  const float along = to.dot(direction);
+  const float margin = 1e-5f * (to.cwiseAbs().sum() + origin.cwiseAbs().maxCoeff());
+  const float reach = 1.001f * std::sqrt(node.radius2) + margin;
+  return along >= -reach && along - reach <= length && (to - along * direction).squaredNorm() <= reach * reach;
 }
 
 float LightTree::importance(const TreeReceiver& receiver) const {

@@ -4,6 +4,8 @@
 /// Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 2023, sec. 12.6; no splitting.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -48,6 +50,11 @@ class LightTree {
   /// Rough irradiance of all emitters; 0 only if there is none.
   float importance(const TreeReceiver& receiver) const;
 
+  /// visit(emitter) of all emitters that a ray of this length may meet, and of some that it only comes near to, in no
+  /// order. direction: unit.
+  template <typename Visit>
+  void visit_along(const Vec3f& origin, const Vec3f& direction, float length, const Visit& visit) const;
+
  private:
   struct Node {
     Vec3f center;
@@ -62,9 +69,31 @@ class LightTree {
               std::uint64_t trail, int depth);
   static Node node_of(const EmitterBounds& bounds);
   static float importance(const Node& node, const TreeReceiver& receiver);
+  static bool may_meet(const Node& node, const Vec3f& origin, const Vec3f& direction, float length);
+
+  static constexpr std::size_t kMostDepth = 32;  ///< halving 2^31 emitters
 
   std::vector<Node> nodes_;
   std::vector<std::uint64_t> trails_;  ///< per emitter: bit d says which child to take at depth d
 };
+
+template <typename Visit>
+void LightTree::visit_along(const Vec3f& origin, const Vec3f& direction, float length, const Visit& visit) const {
+  if (empty()) return;
+  std::array<std::size_t, kMostDepth + 1> waiting{};  // at most one second child a depth
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    std::size_t at = waiting[--count];
+    while (may_meet(nodes_[at], origin, direction, length)) {
+      if (nodes_[at].second == 0) {
+        visit(nodes_[at].emitter);
+        break;
+      }
+      waiting[count++] = static_cast<std::size_t>(nodes_[at].second);
+      ++at;
+    }
+  }
+}
 
 }  // namespace softreel

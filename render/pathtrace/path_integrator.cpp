@@ -1,6 +1,7 @@
 #include "render/pathtrace/path_integrator.h"
 
 #include <bit>
+#include <cmath>
 
 #include "render/pathtrace/edge_lines.h"
 #include "render/pathtrace/random_walk.h"
@@ -36,6 +37,19 @@ enum Dimension : std::size_t {
   kRoulette = 6,
   kLength = 7
 };
+
+/// Towards a light that was sampled from point.lifted. Through the surface it starts at point.lowered, which may be
+/// nearer to the light by more than the light's distance is short of it: the ray aims at the same end from there.
+Ray shadow_ray(const SurfacePoint& point, bool through, const LightSample& light, float time) {
+  Ray ray{point.lifted, light.direction, light.distance, time};
+  if (!through) return ray;
+  ray.origin = point.lowered;
+  if (!std::isfinite(light.distance)) return ray;
+  const Vec3f to = point.lifted + light.distance * light.direction - point.lowered;
+  ray.max_distance = to.norm();
+  ray.direction = to.normalized();
+  return ray;
+}
 
 }  // namespace
 
@@ -78,6 +92,8 @@ void PathIntegrator::collect(bool hit, float distance) {
   const float reach = hit ? distance : ray_.max_distance;
   Vec3f found = picture_.lights->area_lights_along(ray_.origin, ray_.direction, reach, origin_);
   const bool shows_surroundings = !picture_.catches_shadows || bounces_ > 0;
+  // Else what the camera sees of a lamp before nothing would be light without alpha, which PNGs cannot show.
+  if (!shows_surroundings && found.maxCoeff() > 0) first_hit_.coverage = 1;
   if (!hit && shows_surroundings) found += picture_.lights->surroundings(ray_.direction, origin_);
   radiance_ += part_of(found);
 }
@@ -103,6 +119,7 @@ void PathIntegrator::catch_shadow(const RayHit& hit) {
   const SurfacePoint point = surface_point(*picture_.meshes.back(), hit, ray_);
   const CaughtLight light = caught_light(picture_, point, ray_.time, sampler_.numbers(sample_, 1));
   first_hit_.caught = true;
+  first_hit_.position = point.position;
   first_hit_.unshadowed = light.unshadowed;
   first_hit_.shadowed = light.shadowed;
 }
@@ -143,12 +160,8 @@ void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, cons
   const bool weighed = !point_like && picture_.direct_light == DirectLight::Weighed;
   const float weight = weighed ? power_heuristic(light.pdf, value.pdf) : 1.0f;
   const bool through = towards.z() < 0;
-  Ray shadow;
-  shadow.origin = through ? point.lowered : point.lifted;
-  shadow.direction = light.direction;
-  shadow.max_distance = light.distance;
-  shadow.time = ray_.time;
-  const Vec3f arriving = light.radiance.cwiseProduct(transmittance(through ? behind_ : before_, light.distance));
+  const Ray shadow = shadow_ray(point, through, light, ray_.time);
+  const Vec3f arriving = light.radiance.cwiseProduct(transmittance(through ? behind_ : before_, shadow.max_distance));
   light_rays.push_back({shadow, part_of(value.value.cwiseProduct(arriving) * (weight / light.pdf)), number_});
 }
 
@@ -227,7 +240,7 @@ void PathIntegrator::arrive(const RayHit& hit, PathScratch& scratch) {
   collect(true, hit.distance);
   lives_on_ = false;
   if (bounces_ == 0 && picture_.catches_shadows && hit.mesh + 1 == static_cast<Index>(picture_.meshes.size())) {
-    catch_shadow(hit);
+    if (first_hit_.coverage == 0) catch_shadow(hit);
     return;
   }
   const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(bounces_ + 1));

@@ -47,11 +47,11 @@ struct FirstHit {
   Vec3f albedo = Vec3f::Zero();
   Vec3f normal = Vec3f::Zero();
   float distance = 0;
-  Vec3f position = Vec3f::Zero();
-  Index mesh = -1, triangle = -1;      ///< of Picture::meshes; -1: nothing
-  float u = 0, v = 0;                  ///< as RayHit
-  float coverage = 0;                  ///< 1 where it hit what the camera sees
-  bool caught = false;                 ///< it hit the shadow catcher:
+  Vec3f position = Vec3f::Zero();  ///< of the shadow catcher too
+  Index mesh = -1, triangle = -1;  ///< of Picture::meshes; -1: nothing
+  float u = 0, v = 0;              ///< as RayHit
+  float coverage = 0;              ///< 1 where it hit what the camera sees; by a shadow catcher, where it met a lamp
+  bool caught = false;             ///< it hit the shadow catcher:
   float unshadowed = 0, shadowed = 0;  ///< as CaughtLight
 };
 

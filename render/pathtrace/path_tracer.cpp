@@ -10,6 +10,7 @@
 #include "core/base/check.h"
 #include "core/base/error.h"
 #include "render/pathtrace/adaptive_sampling.h"
+#include "render/pathtrace/albedo_cache.h"
 #include "render/pathtrace/camera_rays.h"
 #include "render/pathtrace/picture_hash.h"
 #include "render/pathtrace/pixel_sampling.h"
@@ -80,7 +81,7 @@ class Frame {
     for_rows(tile, [&](PixelSampling& sampling, int x0, int x1, int y) {
       std::array<PixelSums, kTile> sums;
       std::vector<PixelChannels> gathered;
-      if (channels_.any()) gathered.assign(kTile, PixelChannels(channels_));
+      if (channels_.gathers()) gathered.assign(kTile, PixelChannels(channels_));
       sample_row(sampling, x0, x1, y, params_.samples, [&](int x) {
         const auto k = static_cast<std::size_t>(x - x0);
         return SampledPixel{0, 0, &sums[k], gathered.empty() ? nullptr : &gathered[k]};
@@ -92,7 +93,7 @@ class Frame {
     });
   }
 
-  /// One pass: up to `samples` a pixel where `wanted` says so. gathered: per pixel; empty without channels.
+  /// One pass: up to `samples` a pixel where `wanted` says so. gathered: per pixel; empty where no channel gathers.
   void render_tile(int tile, int samples, const std::vector<std::uint8_t>& wanted, std::vector<PixelSums>& all,
                    std::vector<PixelChannels>& gathered) const {
     for_rows(tile, [&](PixelSampling& sampling, int x0, int x1, int y) {
@@ -104,13 +105,13 @@ class Frame {
     });
   }
 
-  /// Means over the samples. gathered: of the other channels; null without.
+  /// Means over the samples. gathered: of the other channels; null where none gathers.
   void store(std::size_t pixel, const PixelSums& sums, const PixelChannels* gathered) const {
     std::size_t plane = 0;
     for (const double value : sums.values)
       image_.channels[plane++].pixels[pixel] = static_cast<float>(value / sums.samples);
     if (picture_.catches_shadows) image_.channels[plane++].pixels[pixel] = static_cast<float>(sums.alpha());
-    if (gathered != nullptr) gathered->store(image_, plane, pixel);
+    channels_.store(image_, plane, pixel, sums.samples, gathered);
   }
 
  private:
@@ -157,7 +158,7 @@ class Passes {
       : params_(params), frame_(frame), width_(image.width), height_(image.height) {
     const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     sums_.resize(pixels);
-    if (channels.any()) gathered_.assign(pixels, PixelChannels(channels));
+    if (channels.gathers()) gathered_.assign(pixels, PixelChannels(channels));
     wanted_.assign(pixels, 1);
   }
 
@@ -195,7 +196,7 @@ class Passes {
   const Frame& frame_;
   int width_, height_;
   std::vector<PixelSums> sums_;
-  std::vector<PixelChannels> gathered_;  ///< empty without channels
+  std::vector<PixelChannels> gathered_;  ///< empty where no channel gathers
   std::vector<std::uint8_t> wanted_;
 };
 
@@ -206,8 +207,8 @@ double expected_paths(const RenderParams& params) {
 }
 
 /// The material twice: as it is, and as it is seen by way of a wide scattering.
-void add_bsdfs(Picture& picture, const Appearance& appearance, float least_roughness) {
-  picture.bsdfs.emplace_back(appearance);
+void add_bsdfs(Picture& picture, const Appearance& appearance, float least_roughness, AlbedoCache& tables) {
+  picture.bsdfs.emplace_back(appearance, tables.of(appearance));
   Appearance blurred = appearance;
   blurred.roughness = std::max(appearance.roughness, least_roughness);
   blurred.coat_roughness = std::max(appearance.coat_roughness, least_roughness);
@@ -215,7 +216,7 @@ void add_bsdfs(Picture& picture, const Appearance& appearance, float least_rough
   if (blurred.roughness == appearance.roughness && same_coat)
     picture.blurred.push_back(picture.bsdfs.back());
   else
-    picture.blurred.emplace_back(blurred);
+    picture.blurred.emplace_back(blurred, tables.of(blurred));
 }
 
 std::optional<Bsdf> line_bsdf(const MotionMesh& mesh) {
@@ -227,7 +228,7 @@ std::optional<Bsdf> line_bsdf(const MotionMesh& mesh) {
 }
 
 /// Meshes and materials of the scene; the ground comes last.
-Picture make_picture(const Scene& scene, const RenderParams& params, const MotionMesh& ground) {
+Picture make_picture(const Scene& scene, const RenderParams& params, const MotionMesh& ground, AlbedoCache& tables) {
   Picture picture;
   picture.max_bounces = params.max_bounces;
   picture.clamp = params.clamp;
@@ -237,10 +238,10 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
   if (scene.ground) picture.meshes.push_back(&ground);
   picture.catches_shadows = scene.ground && scene.ground->shadow_catcher;
   for (const MotionMesh* mesh : picture.meshes) {
-    add_bsdfs(picture, mesh->appearance, params.caustic_roughness);
+    add_bsdfs(picture, mesh->appearance, params.caustic_roughness, tables);
     picture.lines.push_back(line_bsdf(*mesh));
     picture.colored.push_back(
-        mesh->coloring.empty() ? nullptr : std::make_unique<ColoredSurface>(*mesh, params.caustic_roughness));
+        mesh->coloring.empty() ? nullptr : std::make_unique<ColoredSurface>(*mesh, params.caustic_roughness, tables));
     picture.has_textures = picture.has_textures || !mesh->coloring.maps.empty();
     picture.has_emission = picture.has_emission || mesh->appearance.emission.maxCoeff() > 0;
   }
@@ -251,7 +252,7 @@ Picture make_picture(const Scene& scene, const RenderParams& params, const Motio
     picture.pattern.emplace(*scene.ground, scene.camera);
     Appearance second = scene.ground->appearance;
     second.base_color = scene.ground->checker_color;
-    add_bsdfs(picture, second, params.caustic_roughness);
+    add_bsdfs(picture, second, params.caustic_roughness, tables);
   }
   return picture;
 }
@@ -264,6 +265,7 @@ struct PathTracer::Parts {
   const Threads& threads;
   StageTimes& times;
   std::unique_ptr<RayScene> rays;
+  AlbedoCache tables;  ///< kept from frame to frame
 };
 
 PathTracer::PathTracer(const Threads& threads, StageTimes& times)
@@ -299,7 +301,8 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   const MotionMesh ground = !scene.ground  ? MotionMesh{}
                             : ground_apart ? ground_mesh(*scene.ground, scene.camera, 1)
                                            : ground_mesh(*scene.ground, scene.camera);
-  Picture picture = make_picture(scene, params, ground);
+  parts_->tables.drop_unused();
+  Picture picture = make_picture(scene, params, ground, parts_->tables);
   const LightSet lights(scene);
   picture.lights = &lights;
   std::vector<const MotionMesh*> bodies = picture.meshes;

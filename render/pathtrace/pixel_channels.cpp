@@ -5,8 +5,6 @@
 #include <optional>
 #include <string>
 
-#include "render/image/cryptomatte.h"
-
 namespace softreel {
 namespace {
 
@@ -80,13 +78,14 @@ void ChannelLayout::add_planes(Image& image) const {
 
 Vec2f ChannelLayout::motion(const Ray& camera_ray, const FirstHit& hit, bool& is_seen) const {
   std::optional<Vec2f> here, there;
-  if (hit.mesh < 0) {
+  if (hit.mesh < 0 && !hit.caught) {
     here = projected(camera_, width_, height_, camera_ray.direction, true);
     there = projected(next_camera_, width_, height_, camera_ray.direction, true);
   } else {
     Vec3f now = hit.position, next = hit.position;
-    if (const auto m = static_cast<std::size_t>(hit.mesh); m < scene_.meshes.size()) {
-      const MotionMesh& mesh = scene_.meshes[m];
+    const bool is_body = hit.mesh >= 0 && static_cast<std::size_t>(hit.mesh) < scene_.meshes.size();
+    if (is_body) {  // else the ground, which stands still
+      const MotionMesh& mesh = scene_.meshes[static_cast<std::size_t>(hit.mesh)];
       const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(hit.triangle)];
       // The shutter closes at the frame: from there to the next one, whenever the ray was shot.
       now = next = point_of(mesh.times.back().positions, triangle, hit.u, hit.v);
@@ -103,7 +102,6 @@ void PixelChannels::add(const Ray& camera_ray, const FirstHit& hit) {
   const ChannelLayout& layout = layout_;
   const ChannelSet& channels = layout.channels_;
   const bool found = hit.mesh >= 0;
-  ++samples_;
   albedo_.add(hit.albedo);
   normal_.add(hit.normal);
   if (found) depth_.add(Vec3f(hit.distance, 0, 0));
@@ -124,42 +122,64 @@ void PixelChannels::add(const Ray& camera_ray, const FirstHit& hit) {
     }
   }
   if (!channels.has(PictureChannel::ObjectId) && !channels.has(PictureChannel::MaterialId)) return;
-  hits_.resize(layout.objects_.size());
-  ++hits_[m];
+  count_hit(m);
 }
 
-void PixelChannels::store(Image& image, std::size_t first_plane, std::size_t pixel) const {
-  const ChannelLayout& layout = layout_;
+void PixelChannels::count_hit(std::size_t mesh) {
+  const auto is_before = [](const MeshHits& hits, std::size_t m) { return hits.mesh < m; };
+  const auto place = std::lower_bound(hits_.begin(), hits_.end(), mesh, is_before);
+  if (place != hits_.end() && place->mesh == mesh)
+    ++place->count;
+  else
+    hits_.insert(place, {mesh, 1});
+}
+
+/// ids: per mesh; meshes of the same name are one object.
+std::vector<IdCoverage> PixelChannels::covering(const std::vector<float>& ids, int samples) const {
+  std::vector<IdCoverage> all;
+  for (const MeshHits& hits : hits_) {
+    const float id = ids[hits.mesh];
+    const auto is_same = [id](const IdCoverage& known) {
+      return std::bit_cast<std::uint32_t>(known.id) == std::bit_cast<std::uint32_t>(id);
+    };
+    const auto known = std::find_if(all.begin(), all.end(), is_same);
+    IdCoverage& covered = known != all.end() ? *known : all.emplace_back(IdCoverage{id, 0});
+    covered.coverage += static_cast<float>(hits.count) / static_cast<float>(samples);
+  }
+  return all;
+}
+
+bool ChannelLayout::gathers() const {
+  ChannelSet counted;
+  counted.add(PictureChannel::Samples);
+  return (channels_.bits & ~counted.bits) != 0;
+}
+
+void ChannelLayout::store(Image& image, std::size_t first_plane, std::size_t pixel, int samples,
+                          const PixelChannels* gathered) const {
   std::size_t plane = first_plane;
   const auto put = [&](PictureChannel channel, const Vec3f& value, int count) {
-    if (!layout.channels_.has(channel)) return;
+    if (!channels_.has(channel)) return;
     for (int c = 0; c < count; ++c) image.channels[plane++].pixels[pixel] = value[c];
   };
-  put(PictureChannel::Albedo, albedo_.value(), 3);
-  put(PictureChannel::Normal, normal_.value(), 3);
-  put(PictureChannel::Depth, depth_.value(), 1);
-  put(PictureChannel::Position, position_.value(), 3);
-  put(PictureChannel::Motion, motion_.value(), 2);
-  put(PictureChannel::Strain, strain_.value(), 1);
-  put(PictureChannel::Samples, Vec3f::Constant(static_cast<float>(samples_)), 1);
+  const auto put_mean = [&](PictureChannel channel, PixelChannels::Mean PixelChannels::*mean, int count) {
+    if (gathered != nullptr) put(channel, (gathered->*mean).value(), count);
+  };
+  put_mean(PictureChannel::Albedo, &PixelChannels::albedo_, 3);
+  put_mean(PictureChannel::Normal, &PixelChannels::normal_, 3);
+  put_mean(PictureChannel::Depth, &PixelChannels::depth_, 1);
+  put_mean(PictureChannel::Position, &PixelChannels::position_, 3);
+  put_mean(PictureChannel::Motion, &PixelChannels::motion_, 2);
+  put_mean(PictureChannel::Strain, &PixelChannels::strain_, 1);
+  put(PictureChannel::Samples, Vec3f::Constant(static_cast<float>(samples)), 1);
   const auto put_ids = [&](PictureChannel channel, const std::vector<float>& ids) {
-    if (!layout.channels_.has(channel)) return;
-    std::vector<IdCoverage> covering;
-    for (std::size_t m = 0; m < hits_.size(); ++m) {
-      if (hits_[m] == 0) continue;
-      const float share = static_cast<float>(hits_[m]) / static_cast<float>(samples_);
-      std::size_t k = 0;  // meshes of the same name are one object
-      while (k < covering.size() &&
-             std::bit_cast<std::uint32_t>(covering[k].id) != std::bit_cast<std::uint32_t>(ids[m]))
-        ++k;
-      if (k == covering.size()) covering.push_back({ids[m], 0});
-      covering[k].coverage += share;
-    }
+    if (gathered == nullptr || !channels_.has(channel)) return;
+    std::vector<IdCoverage> covering = gathered->covering(ids, samples);
     store_cryptomatte(image, plane, pixel, covering);
     plane += 2 * kCryptomatteRanks;
   };
-  put_ids(PictureChannel::ObjectId, layout.object_ids_);
-  put_ids(PictureChannel::MaterialId, layout.material_ids_);
+  put_ids(PictureChannel::ObjectId, object_ids_);
+  put_ids(PictureChannel::MaterialId, material_ids_);
 }
 
 }  // namespace softreel

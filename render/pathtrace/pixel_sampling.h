@@ -17,7 +17,7 @@ static_assert(kBatch % kRayPacket == 0, "passes of whole batches are passes of w
 struct SampledPixel {
   int x = 0, y = 0;                   ///< in the whole picture, which keys the samples: a crop has the bits of it
   PixelSums* sums = nullptr;          ///< samples so far
-  PixelChannels* gathered = nullptr;  ///< of the other channels; null without
+  PixelChannels* gathered = nullptr;  ///< of the other channels; null where none gathers
   PixelSums before{};                 ///< when its last batch of samples (kBatch) began
 };
 

@@ -154,10 +154,10 @@ class RestTrees {
   /// What the ray met, from its place in all meshes.
   void find_triangle(unsigned joined_triangle, RayHit& hit) const {
     const auto triangle = static_cast<Index>(joined_triangle);
-    std::size_t mesh = 0;
-    while (mesh + 1 < first_triangles_.size() && triangle >= first_triangles_[mesh + 1]) ++mesh;
-    hit.mesh = static_cast<Index>(mesh);
-    hit.triangle = triangle - first_triangles_[mesh];
+    // The last mesh that begins there or before: those of no triangles begin where the next one does.
+    const auto first = std::upper_bound(first_triangles_.begin(), first_triangles_.end(), triangle) - 1;
+    hit.mesh = static_cast<Index>(first - first_triangles_.begin());
+    hit.triangle = triangle - *first;
   }
 
  private:

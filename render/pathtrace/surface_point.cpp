@@ -33,14 +33,23 @@ Vec3f facing_normal(const Vec3f& normal, const Vec3f& to_viewer) {
   return (normal + (kGrazing - cosine) * to_viewer).normalized();
 }
 
+/// How far a corner's normal may be trusted to be that of a round surface, by its cosine with the triangle's own: not
+/// where sharp edges were averaged, as at the corners of a box of twelve triangles, whose faces are flat.
+float roundness(float cosine) {
+  constexpr float kSharp = 0.7f, kRound = 0.9f;
+  const float t = std::clamp((cosine - kSharp) / (kRound - kSharp), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
 /// From the flat triangle to the surface bulging out over it: the mean of the feet on the corners' tangent planes.
 [[gnu::always_inline]] inline Vec3f bulge(const Corners& p, const Corners& n, const std::array<float, 3>& weights,
-                                          const Vec3f& at, float side) {
+                                          const SurfacePoint& point, float side) {
   Vec3f sum = Vec3f::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
     // No branch: which corners are above is as good as chance.
-    const float depth = std::min(side * (at - p[k]).dot(n[k]), 0.0f);
-    sum -= (weights[k] * depth * side) * n[k];
+    const float depth = std::min(side * (point.position - p[k]).dot(n[k]), 0.0f);
+    const float round = roundness(side * n[k].dot(point.geometric_normal));
+    sum -= (weights[k] * depth * side * round) * n[k];
   }
   return sum;
 }
@@ -91,7 +100,7 @@ SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray&
   const Vec3f mean = side * (weights[0] * n[0] + weights[1] * n[1] + weights[2] * n[2]);
   const float length = mean.norm();
   if (length > 1e-6f) point.shading_normal = facing_normal(mean / length, -ray.direction);
-  point.lifted += bulge(p, n, weights, point.position, side);
+  point.lifted += bulge(p, n, weights, point, side);
   return point;
 }
 

@@ -38,8 +38,8 @@ struct SurfacePoint {
 /// The point of `mesh` that `ray` hit. Corners move on straight lines between the mesh's times.
 ///
 /// lifted: Hanika, Hacking the Shadow Terminator, 2021: on the smooth surface that the vertex normals describe, not on
-/// the flat triangle, so that large triangles cast no shadow of their own shape; and off the surface by the rounding of
-/// its coordinates.
+/// the flat triangle, so that large triangles cast no shadow of their own shape; but for corners whose normal is far
+/// from the triangle's, where an edge is sharp. And off the surface by the rounding of its coordinates.
 SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray& ray);
 
 }  // namespace softreel

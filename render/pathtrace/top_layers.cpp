@@ -7,7 +7,7 @@
 namespace softreel {
 
 std::shared_ptr<const TopLayers> TopLayers::make(const Appearance& appearance) {
-  if (appearance.coat <= 0 && appearance.sheen <= 0) return nullptr;
+  if (!has_any(appearance)) return nullptr;
   return std::make_shared<const TopLayers>(appearance);
 }
 

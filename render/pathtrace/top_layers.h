@@ -16,7 +16,9 @@ namespace softreel {
 
 class TopLayers {
  public:
-  /// Null if the material has neither coat nor sheen.
+  /// Whether the material has coat or sheen.
+  static bool has_any(const Appearance& appearance) { return appearance.coat > 0 || appearance.sheen > 0; }
+  /// Null if it has neither.
   static std::shared_ptr<const TopLayers> make(const Appearance& appearance);
   explicit TopLayers(const Appearance& appearance);
 

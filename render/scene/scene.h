@@ -60,8 +60,8 @@ struct Ground {
   Appearance appearance;
   float checker = 0;  ///< m, edge of the squares of a two-tone pattern; 0: none
   Vec3f checker_color = Vec3f(0.4f, 0.4f, 0.4f);
-  /// The camera sees only the shadow on it, as alpha over nothing, and nothing of the surroundings; to all other rays
-  /// it is there.
+  /// The camera sees only the shadow on it, as alpha over nothing, and nothing of the surroundings; visible lamps are
+  /// opaque before both. To all other rays it is there.
   bool shadow_catcher = false;
 };
 

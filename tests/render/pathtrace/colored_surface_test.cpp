@@ -34,7 +34,8 @@ struct Seen {
 
 /// What a ray straight down (or `direction`) sees at a place of triangle 0.
 Seen look(const MotionMesh& mesh, const Vec3f& direction = Vec3f(0, -1, 0), bool blurred = false, Index triangle = 0) {
-  const ColoredSurface surface(mesh, 0.4f);
+  AlbedoCache tables;
+  const ColoredSurface surface(mesh, 0.4f, tables);
   RayHit hit;
   hit.mesh = 0;
   hit.triangle = triangle;
@@ -147,7 +148,8 @@ TEST(ColoredSurface, MapsMoveWithTheSurfaceWhileTheShutterIsOpen) {
   mesh.times.push_back(mesh.times[0]);
   for (Vec3f& p : mesh.times[1].positions) p = Vec3f(-p.y(), p.x(), p.z());
   for (Vec3f& n : mesh.times[1].normals) n = Vec3f(-n.y(), n.x(), n.z());
-  const ColoredSurface surface(mesh, 0.4f);
+  AlbedoCache tables;
+  const ColoredSurface surface(mesh, 0.4f, tables);
   RayHit hit;
   hit.mesh = hit.triangle = 0;
   hit.u = hit.v = 0.3f;
@@ -187,7 +189,8 @@ TEST(ColoredSurface, NormalsOfASphereAreSmoothAcrossItsTriangles) {
   }
   mesh.coloring.coordinates = std::move(own);
   mesh.coloring.maps.normal = constant(Vec3f(0.3f, 0.3f, 0.9f));
-  const ColoredSurface surface(mesh, 0);
+  AlbedoCache tables;
+  const ColoredSurface surface(mesh, 0, tables);
   int compared = 0;
   for (std::size_t t = 0; t + 1 < mesh.triangles.size(); t += 2) {  // the two of a quadrangle share the edge d, b
     const Triangle &first = mesh.triangles[t], &second = mesh.triangles[t + 1];

@@ -151,6 +151,23 @@ TEST(FittedTrees, KnowEachScatteringBodyByItself) {
   }
 }
 
+TEST(FittedTrees, TellMeshesApartThatStandAmongEmptyOnes) {
+  const Balls balls(0.4f);
+  MotionMesh empty;
+  empty.times.resize(1);
+  const auto among = make_ray_scene(2), alone = make_ray_scene(2);
+  among->build({&empty, &balls.meshes[0], &empty, &empty, &balls.meshes[1], &balls.meshes[2], &empty}, kFew);
+  alone->build(balls.all(), kFew);
+  const std::vector<Ray> rays = rays_at(balls.meshes);
+  std::vector<RayHit> found = hits(*among, rays);
+  for (RayHit& hit : found) {
+    if (hit.mesh < 0) continue;
+    ASSERT_TRUE(hit.mesh == 1 || hit.mesh == 4 || hit.mesh == 5) << hit.mesh;
+    hit.mesh = hit.mesh == 1 ? 0 : hit.mesh - 3;
+  }
+  EXPECT_EQ(differences(found, hits(*alone, rays)), 0);
+}
+
 TEST(FittedTrees, GiveTheSamePictureAloneAndInASequence) {
   const auto scene_of = [](float lean) {
     Scene scene = scene_in_sky(1);

@@ -1,5 +1,10 @@
 #include "render/pathtrace/light_set.h"
 
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -110,6 +115,69 @@ TEST(LightSet, HidesInvisibleLampsFromTheCameraOnly) {
   RayOrigin mirror;
   mirror.from_camera = false;
   EXPECT_EQ(lights.area_lights_along(under, up, 1e9f, mirror), Vec3f(1, 1, 1));
+}
+
+/// Lamps of all shapes about the origin, and apart from them a row of spheres along x.
+std::vector<AreaLight> many_lamps() {
+  std::mt19937 random(7);
+  const auto number = [&](float least, float most) { return std::uniform_real_distribution(least, most)(random); };
+  std::vector<AreaLight> lamps;
+  for (int k = 0; k < 300; ++k) {
+    AreaLight lamp;
+    lamp.shape = std::array{LampShape::Rectangle, LampShape::Disk, LampShape::Sphere}[static_cast<std::size_t>(k % 3)];
+    lamp.center =
+        k < 200 ? Vec3f(number(-4, 4), number(-4, 4), number(-4, 4)) : Vec3f(0.2f * static_cast<float>(k), 20, 0);
+    if (k >= 200) lamp.shape = LampShape::Sphere;
+    const float size = k < 200 ? number(0.01f, 1) : 0.05f;
+    lamp.u = size * Vec3f(number(-1, 1), number(-1, 1), number(-1, 1)).normalized();
+    lamp.v = number(0.1f, 1) * lamp.u.cross(Vec3f(number(-1, 1), number(-1, 1), number(-1, 1)));
+    lamp.radiance = Vec3f(number(0, 1), number(0, 1), number(0, 1));
+    lamps.push_back(lamp);
+  }
+  return lamps;
+}
+
+TEST(LightSet, RaysMeetTheSameOfManyLampsAsOfEachAlone) {
+  Scene scene = scene_in_sky(0);
+  scene.area_lights = many_lamps();
+  const LightSet all(scene);
+  std::vector<LightSet> single;
+  for (const AreaLight& lamp : many_lamps()) {
+    scene.area_lights = {lamp};
+    single.emplace_back(scene);
+  }
+  std::mt19937 random(8);
+  const auto number = [&](float least, float most) { return std::uniform_real_distribution(least, most)(random); };
+  int lit = 0;
+  for (int k = 0; k < 3000; ++k) {
+    // Every tenth one along the row: more lamps than the tree names.
+    const bool on_row = k % 10 == 0;
+    const Vec3f origin = on_row ? Vec3f(20, 20, 0) : Vec3f(number(-4, 4), number(-4, 4), number(-4, 4));
+    const Vec3f direction =
+        on_row ? Vec3f(1, 0, 0) : Vec3f(Vec3f(number(-1, 1), number(-1, 1), number(-1, 1)).normalized());
+    const float length = k % 3 == 0 ? number(0, 10) : std::numeric_limits<float>::infinity();
+    Vec3f expected = Vec3f::Zero();
+    for (const LightSet& one : single) expected += one.area_lights_along(origin, direction, length, RayOrigin{});
+    ASSERT_EQ(all.area_lights_along(origin, direction, length, RayOrigin{}), expected) << k;
+    if (!expected.isZero(0)) ++lit;
+  }
+  EXPECT_GT(lit, 500);
+}
+
+TEST(LightTree, ARayAsksFewOfManyEmitters) {
+  std::vector<EmitterBounds> emitters;
+  for (int k = 0; k < 4096; ++k) {
+    const auto at = [&](int divisor) { return static_cast<float>(k / divisor % 16); };
+    const Vec3f low(at(1), at(16), at(256));
+    emitters.push_back({low, low + Vec3f::Constant(0.1f), {Vec3f(0, 1, 0), 0}, 1});
+  }
+  const LightTree tree(emitters);
+  std::vector<Index> visited;
+  tree.visit_along(Vec3f(-1, 3.05f, 7.05f), Vec3f(1, 0, 0), 10, [&](Index emitter) { visited.push_back(emitter); });
+  std::sort(visited.begin(), visited.end());
+  std::vector<Index> row;
+  for (Index k = 0; k < 10; ++k) row.push_back(k + 3 * 16 + 7 * 256);
+  EXPECT_EQ(visited, row);
 }
 
 TEST(LightSet, RefusesASunWithoutDirection) {

@@ -70,5 +70,61 @@ TEST(LightWeights, BothStrategiesAloneGiveTheSamePicture) {
   }
 }
 
+void expect_strategies_agree(const Scene& scene, double share) {
+  const auto found = [&](DirectLight by) {
+    RenderParams params = small_params(8, 1024);
+    params.caustic_roughness = 0;
+    params.direct_light = by;
+    return mean_of(rendered(scene, params).channels[0]);
+  };
+  const double weighed = found(DirectLight::Weighed);
+  EXPECT_GT(weighed, 0.05);
+  EXPECT_NEAR(found(DirectLight::Lights), weighed, share * weighed) << "lights only";
+  EXPECT_NEAR(found(DirectLight::Scattering), weighed, share * weighed) << "scattering only";
+}
+
+Appearance glowing() {
+  Appearance appearance = matte(0);
+  appearance.emission = Vec3f::Ones();
+  return appearance;
+}
+
+MotionMesh moved(MotionMesh mesh, const Vec3f& by) {
+  for (Vec3f& p : mesh.times[0].positions) p += by;
+  return mesh;
+}
+
+TEST(LightWeights, AgreeOnAGlowingBodyCloseBehindRoughGlass) {
+  // Off the origin, where rays that pass through start farther below the glass than shadow rays stop before the body.
+  const Vec3f offset(3, 0, 0);
+  Appearance glass;
+  glass.base_color = Vec3f::Ones();
+  glass.transmission = 1;
+  glass.roughness = 0.6f;
+  Scene scene = scene_in_sky(0);
+  scene.meshes = {moved(square(0.5f, 0, glass), offset), moved(square(0.1f, -0.05f, glowing()), offset)};
+  scene.camera = camera_above(1, 0.1f);
+  scene.camera.position += offset;
+  scene.camera.target += offset;
+  expect_strategies_agree(scene, 0.03);
+}
+
+TEST(LightWeights, AgreeWhereAGlowingBodyStandsOnTheGroundFarFromTheOrigin) {
+  // A wall of 2 cm, 2 to 8 mm from what the picture shows; at 50 m the coordinates of its points are 4 um apart.
+  MotionMesh wall;
+  wall.appearance = glowing();
+  wall.times.resize(1);
+  wall.times[0].positions = {Vec3f(50, 0, -0.02f), Vec3f(50, 0, 0.02f), Vec3f(50.002f, 0.02f, 0.02f),
+                             Vec3f(50.002f, 0.02f, -0.02f)};
+  wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Scene scene = scene_in_sky(0);
+  scene.meshes = {moved(square(0.5f, 0, matte(0.8f)), Vec3f(50, 0, 0)), wall};
+  scene.camera.position = Vec3f(49, 1, 0);
+  scene.camera.target = Vec3f(49.995f, 0, 0);
+  scene.camera.sensor_width_mm = 36;
+  scene.camera.focal_length_mm = 36 * 1.41f / 0.004f;
+  expect_strategies_agree(scene, 0.03);
+}
+
 }  // namespace
 }  // namespace softreel

@@ -113,6 +113,22 @@ TEST(MotionChannel, OfTheSkyFollowsTheCamerasTurning) {
   EXPECT_NEAR(value(image, "motion.Y", 20, 20), 0, 0.02);
 }
 
+TEST(MotionChannel, OfAShadowCatcherIsThatOfItsGround) {
+  Scene scene = scene_from_above();
+  scene.ground.emplace();
+  scene.ground->shadow_catcher = true;
+  scene.next_camera = scene.camera;
+  scene.next_camera->position.x() += 0.1f;
+  scene.next_camera->target.x() += 0.1f;
+  const Image image = rendered(
+      scene, with({PictureChannel::Motion, PictureChannel::Depth, PictureChannel::Position, PictureChannel::ObjectId}));
+  EXPECT_NEAR(value(image, "motion.X", 20, 20), -2, 1e-3);
+  EXPECT_NEAR(value(image, "motion.X", 4, 33), -2, 1e-3);
+  EXPECT_NEAR(value(image, "motion.Y", 20, 20), 0, 1e-3);
+  for (const char* name : {"A", "depth.Z", "position.Z", "CryptoObject00.G"})
+    EXPECT_EQ(value(image, name, 4, 33), 0) << name << ": the rest of it is not there";
+}
+
 TEST(PositionChannel, IsWhereTheSurfaceIs) {
   Scene scene = scene_from_above();
   scene.meshes = {square(5, 0.5f, matte(0.5f))};
@@ -181,6 +197,19 @@ TEST(IdChannels, TellTheGroundFromABodyOfThatName) {
     EXPECT_EQ(coverage(image, plane, "ground", 2, 2), 0);
     EXPECT_EQ(coverage(image, plane, "ground_2", 2, 2), 1);
   }
+}
+
+TEST(Channels, OfSamplesAloneGatherNothing) {
+  const Scene scene = scene_from_above();
+  const Picture picture;
+  const auto gathers = [&](std::initializer_list<PictureChannel> channels) {
+    return ChannelLayout(scene, picture, with(channels).channels, 8, 8).gathers();
+  };
+  EXPECT_FALSE(gathers({}));
+  EXPECT_FALSE(gathers({PictureChannel::Samples}));
+  EXPECT_TRUE(gathers({PictureChannel::Samples, PictureChannel::Depth}));
+  EXPECT_TRUE(gathers({PictureChannel::ObjectId}));
+  EXPECT_EQ(value(rendered(scene, with({PictureChannel::Samples})), "samples.N", 3, 3), 8);
 }
 
 TEST(Channels, DoNotTouchTheColour) {

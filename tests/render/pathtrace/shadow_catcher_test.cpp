@@ -101,6 +101,29 @@ TEST(ShadowCatcher, BodiesBehindALampShadowNothing) {
   for (const float value : image.find("A")->pixels) ASSERT_EQ(value, 0);
 }
 
+TEST(ShadowCatcher, LampsThatTheCameraSeesAreOpaque) {
+  Scene scene = catching(0.5f);
+  scene.area_lights = {lamp_overhead()};
+  const auto expect_seen = [&](float radiance, float alpha) {
+    const Image image = rendered(scene, small_params(4, 8));
+    for (const float value : image.find("R")->pixels) EXPECT_EQ(value, radiance);
+    for (const float value : image.find("A")->pixels) EXPECT_EQ(value, alpha);
+  };
+  scene.camera = camera_above(4, 0.1f);  // below the lamp, which shines away from it
+  expect_seen(0, 0);
+  scene.area_lights[0].visible = true;
+  scene.area_lights[0].center = Vec3f(0, 1, 0);
+  std::swap(scene.area_lights[0].u, scene.area_lights[0].v);  // up: before the ground
+  expect_seen(10, 1);
+  scene.camera.position = Vec3f(0, 5, 0);  // before the sky
+  scene.camera.target = Vec3f(0, 10, 0);
+  scene.area_lights[0].center = Vec3f(0, 8, 0);
+  std::swap(scene.area_lights[0].u, scene.area_lights[0].v);
+  expect_seen(10, 1);
+  scene.area_lights[0].visible = false;
+  expect_seen(0, 0);
+}
+
 TEST(Alpha, IsKeptByHalfPicturesAndDividesTheColoursOfTheDisplay) {
   Image image{2, 1, {{"R", {0.1f, 0}}, {"G", {0.2f, 0}}, {"B", {0.25f, 0}}, {"A", {0.5f, 0.25f}}}};
   const Image again = decode_half(encode_half(image));

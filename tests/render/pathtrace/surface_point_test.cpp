@@ -1,5 +1,7 @@
 #include "render/pathtrace/surface_point.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "tests/render/test_scenes.h"
@@ -55,6 +57,57 @@ TEST(SurfacePoint, LiftsOntoTheRoundSurfaceButNotOffAFlatOne) {
   const SurfacePoint point = surface_point(ball, hit, ray_down(Vec3f(0, 2, 0)));
   EXPECT_GT(point.lifted.norm(), point.position.norm() + 1e-3f);
   EXPECT_LT(point.lifted.norm(), 1.02f);
+}
+
+/// A box of twelve triangles with edges of 2 m, whose normals are averaged at its corners.
+MotionMesh rounded_box() {
+  MotionMesh mesh;
+  mesh.times.resize(1);
+  for (int k = 0; k < 8; ++k) {
+    const Vec3f corner(k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f, k & 4 ? 1.0f : -1.0f);
+    mesh.times[0].positions.push_back(corner);
+    mesh.times[0].normals.push_back(corner.normalized());
+  }
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+/// The middle of a triangle, seen from outside or from inside.
+SurfacePoint middle_of(const MotionMesh& mesh, Index triangle, bool from_inside) {
+  RayHit hit;
+  hit.mesh = 0;
+  hit.triangle = triangle;
+  hit.u = hit.v = 1.0f / 3;
+  const Corners p = hit_corners(mesh, hit, Ray{});
+  const Vec3f normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+  Ray ray;
+  ray.direction = from_inside ? normal : Vec3f(-normal);
+  return surface_point(mesh, hit, ray);
+}
+
+TEST(SurfacePoint, StaysOnTheFlatFacesOfABoxWithAveragedNormals) {
+  const MotionMesh box = rounded_box();
+  for (Index t = 0; t < 12; ++t)
+    for (const bool from_inside : {false, true}) {
+      const SurfacePoint point = middle_of(box, t, from_inside);
+      EXPECT_LT((point.lifted - point.position).norm(), 0.01f * 2) << t;
+    }
+}
+
+TEST(SurfacePoint, LiftsAsHanikaDoesOnAFineSphere) {
+  const MotionMesh ball = sphere(Vec3f::Zero(), 1, matte(0.5f), 24);
+  for (std::size_t t = 0; t < ball.triangles.size(); t += 7) {
+    const SurfacePoint point = middle_of(ball, static_cast<Index>(t), false);
+    Vec3f expected = point.position;
+    for (const Index corner : ball.triangles[t]) {
+      const auto k = static_cast<std::size_t>(corner);
+      const Vec3f& n = ball.times[0].normals[k];
+      expected += std::max(0.0f, (ball.times[0].positions[k] - point.position).dot(n)) / 3 * n;
+    }
+    EXPECT_LT((point.lifted - expected).norm(), 1.2e-5f) << "but for the margin of rounding";
+    EXPECT_GT((point.lifted - point.position).norm(), 5e-4f) << "of the sphere's own bulge";
+  }
 }
 
 }  // namespace
