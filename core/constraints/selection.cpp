@@ -69,6 +69,11 @@ std::vector<Index> used_vertices(const SurfaceMesh& surface) {
 }
 
 Error unknown_group(const std::string& name, const SurfaceMesh& surface) {
+  if (surface.groups.empty())
+    return input_error(fmt::format(
+        "the mesh has no vertex group '{}': it names none.\n  Accepted: a selection by place. Select by box, "
+        "sphere or plane.",
+        name));
   std::vector<std::string> names;
   std::string list;
   for (const VertexGroup& group : surface.groups) {
@@ -78,8 +83,7 @@ Error unknown_group(const std::string& name, const SurfaceMesh& surface) {
   const std::string nearest = nearest_name(name, names);
   const std::string advice = nearest.empty() ? "Choose one of them, or select by box, sphere or plane"
                                              : fmt::format("Did you mean '{}'?", nearest);
-  return input_error(fmt::format("the mesh has no vertex group '{}'.\n  Accepted: {}. {}", name,
-                                 list.empty() ? "no group at all, the mesh names none" : list, advice));
+  return input_error(fmt::format("the mesh has no vertex group '{}'.\n  Accepted: {}. {}", name, list, advice));
 }
 
 const VertexGroup& find_group(const std::string& name, const SurfaceMesh& surface) {

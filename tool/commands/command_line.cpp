@@ -1,6 +1,5 @@
 #include "tool/commands/command_line.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <functional>
 
@@ -8,13 +7,13 @@
 #include <fmt/ranges.h>
 
 #include "core/base/error.h"
-#include "core/base/nearest_name.h"
 #include "tool/commands/batch_options.h"
 #include "tool/commands/commands.h"
 #include "tool/commands/everyday_commands.h"
 #include "tool/commands/farm_options.h"
 #include "tool/commands/log_options.h"
 #include "tool/commands/shared_options.h"
+#include "tool/commands/usage_message.h"
 #include "tool/export/formats.h"
 #include "tool/report/version.h"
 
@@ -286,21 +285,6 @@ void add_bench_command(CLI::App& app, Parsed& parsed, Runner& run) {
   bench->callback([&] { run = [&parsed] { return run_bench(parsed.bench); }; });
 }
 
-/// What is wrong with the arguments, and where to read on. A first word that is no subcommand gets the nearest one.
-std::string usage_message(const CLI::App& app, const CLI::ParseError& mistake, int argc, char** argv) {
-  const std::string word = argc > 1 ? argv[1] : "";
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (std::find(names.begin(), names.end(), word) != names.end())
-    return fmt::format("{}: {}\n  See softreel {} --help.", word, mistake.what(), word);
-  if (word.empty() || word.starts_with('-'))
-    return fmt::format("{}\n  Accepted: softreel SUBCOMMAND ... with one of {}. See softreel --help.", mistake.what(),
-                       fmt::join(names, ", "));
-  const std::string nearest = nearest_name(word, names);
-  return fmt::format("\"{}\" is no subcommand.\n  {}Accepted: {}. See softreel --help.", word,
-                     nearest.empty() ? "" : fmt::format("Did you mean {}? ", nearest), fmt::join(names, ", "));
-}
-
 /// What is run, and where, for logs.
 void say_command(int argc, char** argv) {
   std::error_code ignored;
@@ -329,6 +313,7 @@ int run_command_line(int argc, char** argv) {
   add_bench_command(app, parsed, run);
   group_commands(app);
   add_log_options(app, parsed.log);
+  refuse_empty_values(app);
   app.footer(kFooter);
   try {
     app.parse(argc, argv);

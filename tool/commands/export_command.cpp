@@ -28,6 +28,25 @@ std::vector<ExportSeries> make_series(const std::vector<const ExportFormat*>& fo
   return series;
 }
 
+void remove_outdated(std::vector<ExportSeries>& series, const Log& log) {
+  int removed = 0;
+  for (ExportSeries& one : series) removed += one.remove_outdated();
+  if (removed > 0) log.info(fmt::format("{} outdated files removed", removed));
+}
+
+/// What lies beside these files and is not of the same state would be taken for one series with them.
+void warn_of_leftovers(std::vector<ExportSeries>& series, std::vector<ExportSeries>& whole, const Log& log) {
+  std::vector<std::string> leftovers;
+  for (std::size_t i = 0; i < series.size(); ++i)
+    for (std::string& path : series[i].leftovers(whole[i])) leftovers.push_back(std::move(path));
+  if (leftovers.empty()) return;
+  log.warn(fmt::format(
+      "{}: {} of an older state of the shot or of other sub-frames beside those exported now. Export all "
+      "frames, or remove what you do not want.",
+      leftovers.front(),
+      leftovers.size() == 1 ? "this file is" : fmt::format("this and {} more files are", leftovers.size() - 1)));
+}
+
 /// Takes the samples of a body, frame by frame, to the series that want them.
 class BodyExport {
  public:
@@ -123,6 +142,7 @@ int run_export(const ExportOptions& options) {
   session.prepare(outputs, run);
   outputs.note_simulation();
   std::vector<ExportSeries> series = make_series(formats, settings, frames, run, outputs);
+  remove_outdated(series, session.context().log);
   std::vector<BodyExport> bodies;
   for (std::size_t b = 0; b < run.body_count(); ++b) bodies.emplace_back(b, settings, frames, run, series);
   session.console().begin("frames", session.frames().count());
@@ -136,6 +156,9 @@ int run_export(const ExportOptions& options) {
     session.keep_within_limit();
   }
   for (ExportSeries& one : series) one.finish();
+  const ExportFrames all_frames{shot.settings.first_frame, shot.settings.last_frame};
+  std::vector<ExportSeries> whole = make_series(formats, settings, all_frames, run, outputs);
+  warn_of_leftovers(series, whole, session.context().log);
   RunReport report = session.report("export", run);
   for (const ExportSeries& one : series) {
     report.made.push_back(one.made_line());

@@ -23,7 +23,7 @@ void add_work_options(CLI::App& farm, FarmOptions& options) {
   farm.add_option("--cache-limit", options.shot.cache_limit_gb,
                   "size of the cache when the last task is done, 0: no limit [output.cache_limit]")
       ->option_text("GB")
-      ->check(CLI::NonNegativeNumber)
+      ->check(size_limit())
       ->group("Files");
 }
 

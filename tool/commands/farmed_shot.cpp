@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "tool/commands/picture_wishes.h"
 #include "tool/commands/plan_estimate.h"
 #include "tool/report/version.h"
 #include "tool/shot/shot_layers.h"
@@ -144,7 +145,9 @@ void FarmedShot::continue_record(const FarmOptions& options, ShotOptions one) {
 }
 
 void FarmedShot::open(const ShotOptions& options) {
-  session_ = std::make_unique<Session>(options);
+  auto session = std::make_unique<Session>(options);
+  require_any_picture(session->shot());  // here rather than in every task
+  session_ = std::move(session);
 }
 
 void FarmedShot::find_site(const ShotOptions& options) {

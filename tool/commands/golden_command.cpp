@@ -74,10 +74,21 @@ class GoldenShot {
     session_.console().begin("golden frames", static_cast<int>(wanted.size()));
     for (const int frame : wanted) {
       frames.push_back(take(frame, now));
+      missing_ += frames.back().missing ? 1 : 0;
       session_.console().advance(++done, fmt::format("frame {}", frame));
     }
     if (options_.update) keep(record_path(), to_json(now));
     traced_ = done;
+    // Of several shots each says it where it comes, of one the message that ends the program.
+    if (missing_ == done && options_.shots.size() > 1) session_.console().warn(missing_words());
+  }
+
+  /// What is said once, not frame by frame, where there is no golden image at all: as a rule on the first run. Empty
+  /// where there is one.
+  std::string missing_words() const {
+    if (missing_ == 0 || !has_none()) return "";
+    return fmt::format("{}: no golden images yet in {}; --update makes them", shot_.path,
+                       folder_.empty() ? "." : folder_.string());
   }
 
   void finish(const std::string& page) {
@@ -112,7 +123,7 @@ class GoldenShot {
         tracer_.render(scenes_.at(frame, bodies), shot_.render.params, [] { return cancellation().load(); });
     const DisplayImage picture =
         over_grey(to_display(image, shot_.output.view, static_cast<float>(shot_.output.exposure)));
-    GoldenPageFrame result{shot_.settings.name, frame, false, {}, {}, {}, {}, {}};
+    GoldenPageFrame result{shot_.settings.name, frame, false, false, {}, {}, {}, {}, {}};
     if (options_.update) {
       keep(golden_path(frame), encode_png(picture));
       return result;
@@ -122,20 +133,26 @@ class GoldenShot {
     if (result.changed || (record_ && !cause.same_geometry)) result.cause = cause.words;
     const std::string line = fmt::format("{}: {}", golden_path(frame), result.verdict);
     const std::string actual = outputs_.frame_path(frame, "actual.png");
-    if (result.changed)
+    if (result.changed && !(result.missing && has_none()))
       session_.console().warn(line +
                               (result.golden.empty() ? "" : "\n  see " + actual + " and the difference beside it") +
                               (result.cause.empty() ? "" : "\n  " + result.cause));
-    else if (!result.cause.empty())
+    else if (!result.changed && !result.cause.empty())
       session_.console().info(line + "; but " + result.cause);
     return result;
+  }
+
+  /// Of no frame is there a golden image.
+  bool has_none() const {
+    const std::set<int> wanted = golden_frames(shot_);
+    return std::none_of(wanted.begin(), wanted.end(), [&](int frame) { return fs::exists(golden_path(frame)); });
   }
 
   /// Compares a picture with its golden image; leaves both and their difference in the output folder if it changed.
   void judge(const DisplayImage& picture, GoldenPageFrame& result) {
     const std::string path = golden_path(result.frame), actual = outputs_.frame_path(result.frame, "actual.png");
     if (!fs::exists(path)) {
-      result.changed = true;
+      result.changed = result.missing = true;
       result.verdict = "there is no golden image. Look at the frame, then make one with --update.";
       result.now = encode_png(picture);
       return;
@@ -180,7 +197,7 @@ class GoldenShot {
   SettingsSnapshot settings_;
   std::optional<GoldenRecord> record_;
   std::vector<std::string> made_;
-  int traced_ = 0;
+  int traced_ = 0, missing_ = 0;
 };
 
 /// One shot of several: what is wrong with it is said, and the others go on.
@@ -199,7 +216,7 @@ bool fails(const GoldenOptions& options, const std::string& path, const std::fun
 
 int run_golden(const GoldenOptions& options) {
   std::vector<GoldenPageFrame> frames;
-  std::string page_path;
+  std::string page_path, missing;
   int failed = 0;
   for (const std::string& path : options.shots) {
     const bool has_failed = fails(options, path, [&] {
@@ -212,12 +229,15 @@ int run_golden(const GoldenOptions& options) {
       GoldenShot shot(options, path);
       if (page_path.empty()) page_path = (fs::path(shot.output_folder()) / "golden.html").string();
       shot.run(frames);
+      missing = shot.missing_words();
       if (!options.update) write_file(page_path, golden_page(frames));
       shot.finish(options.update ? "" : page_path);
     });
     failed += has_failed ? 1 : 0;
   }
   const auto changed = std::count_if(frames.begin(), frames.end(), [](const auto& frame) { return frame.changed; });
+  if (!missing.empty() && options.shots.size() == 1)
+    throw work_error(fmt::format("{}. The frames are in {}", missing, page_path));
   if (failed > 0)
     throw work_error(fmt::format("{} of {} shots failed; of the others {} of {} golden images changed.", failed,
                                  options.shots.size(), changed, frames.size()));

@@ -156,6 +156,7 @@ void check_surface_options(const InspectOptions& options) {
 }  // namespace
 
 int run_inspect(const InspectOptions& options) {
+  keep_nothing_when_interrupted();
   Console console(Verbosity::Normal, isatty(STDERR_FILENO) != 0);
   if (is_tet_mesh_file(options.mesh)) return inspect_tets(options, console.log());
   check_surface_options(options);

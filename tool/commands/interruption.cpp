@@ -25,6 +25,11 @@ std::atomic<bool>& has_children() {
   return children;
 }
 
+std::atomic<bool>& keeps_nothing() {
+  static std::atomic<bool> nothing{false};
+  return nothing;
+}
+
 sigset_t watched_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -42,7 +47,8 @@ void watch() {
   const timespec patience = has_children() ? kPatienceWithChildren : kPatienceAlone;
   while (sigtimedwait(&signals, nullptr, &patience) < 0 && errno == EINTR) continue;
   // Still here: time is up, or a second signal came.
-  std::fputs("\nsoftreel: Interrupted; what is finished is kept. Run the same command again to go on.\n", stderr);
+  std::fprintf(stderr, "\nsoftreel: %s\n",
+               interruption_message("Interrupted; what is finished is kept. Run the same command again to go on."));
   std::fflush(stderr);
   remove_lock_files_at_once();
   ::_exit(130);
@@ -53,6 +59,15 @@ void watch() {
 std::atomic<bool>& cancellation() {
   static std::atomic<bool> cancelled{false};
   return cancelled;
+}
+
+const char* interruption_message(const char* usual) {
+  return keeps_nothing() ? "Interrupted; nothing is kept to go on from. Run the same command again to start anew."
+                         : usual;
+}
+
+void keep_nothing_when_interrupted() {
+  keeps_nothing() = true;
 }
 
 void wait_for_children_when_interrupted() {

@@ -13,6 +13,12 @@ std::atomic<bool>& cancellation();
 /// second signal ends the program at once. Called once, before other threads are made.
 void watch_for_interruption();
 
+/// What the program says as it ends: the usual words, unless the command keeps nothing.
+const char* interruption_message(const char* usual);
+
+/// This command writes its one result at its end: once interrupted it says so, rather than that it can go on.
+void keep_nothing_when_interrupted();
+
 /// This command runs others of the same program, and reports what became of them: once interrupted it is given the time
 /// to see them end, a few seconds at most.
 void wait_for_children_when_interrupted();

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "tool/commands/commands.h"
+#include "tool/commands/picture_wishes.h"
 #include "tool/farm/shell_text.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/picture_stage.h"
@@ -33,9 +34,7 @@ struct Wanted {
 Wanted find_wanted(const Session& session) {
   const Shot& shot = session.shot();
   const FrameSpan& frames = session.frames();
-  const bool whole = frames.first == shot.settings.first_frame && frames.last == shot.settings.last_frame;
-  const Wanted wanted{shot.output.png && shot.output.movie && whole && frames.count() > 1,
-                      shot.output.png && shot.output.contact_sheet};
+  const Wanted wanted{makes_movie(shot, frames), shot.output.png && shot.output.contact_sheet};
   if (!wanted.movie && !wanted.sheet)
     throw input_error(fmt::format(
         "{}: --only movie: the shot asks for no movie of these frames and for no contact sheet.\n  Accepted: "

@@ -10,6 +10,7 @@
 #include "tool/commands/commands.h"
 #include "tool/farm/shell_text.h"
 #include "tool/stages/atomic_file.h"
+#include "tool/stages/json_text.h"
 #include "tool/starter/starter_shot.h"
 
 namespace softreel {
@@ -36,6 +37,9 @@ void require_free(const std::string& path, bool force) {
 }  // namespace
 
 int run_new(const NewOptions& options) {
+  keep_nothing_when_interrupted();
+  require_utf8(options.mesh, "the name of the mesh");  // the shot holds it, and is UTF-8
+  require_utf8(options.output, "the name of the shot");
   const std::string path = target_of(options);
   require_free(path, options.force);
   Console console(Verbosity::Normal, isatty(STDERR_FILENO) != 0);

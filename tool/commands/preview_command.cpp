@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -58,6 +59,34 @@ class Playblast {
     if (shows_tets(options)) cut_.emplace(run, scenes_, options.cut);
   }
 
+  /// Nothing of an older shot or other options stays under the names of these frames, nor their movie: a killed run
+  /// leaves no mixture.
+  void remove_outdated(const FrameSpan& frames) {
+    const int removed = outputs_.remove_outdated(keys(frames));
+    if (removed > 0) session_.console().info(fmt::format("{} outdated pictures removed", removed));
+    const ShotSettings& all = run_.shot().settings;
+    const std::string movie = outputs_.path("mp4");
+    const int movies = outputs_.remove_if({movie}, [&](const std::string&) {
+      return is_movie_outdated(run_.shot(), all.first_frame, all.last_frame, outputs_);
+    });
+    if (movies > 0) session_.console().info(fmt::format("{} removed: it is of other pictures", movie));
+  }
+
+  /// Frames that are not made now, and whose pictures are of an older state of the shot or of other options.
+  void warn_of_leftovers() const {
+    const ShotSettings& all = run_.shot().settings;
+    std::vector<std::string> leftovers;
+    for (const auto& [path, key] : keys({all.first_frame, all.last_frame}))
+      if (outputs_.claimed_state(path, key) == OutputState::Stale) leftovers.push_back(path);
+    if (leftovers.empty()) return;
+    session_.console().warn(
+        fmt::format("{}: {} of an older state of the shot or of other options beside those drawn now. Draw all frames, "
+                    "or remove what you do not want.",
+                    leftovers.front(),
+                    leftovers.size() == 1 ? "this picture is"
+                                          : fmt::format("this and {} more pictures are", leftovers.size() - 1)));
+  }
+
   /// Writes the picture of a frame unless it is there. True if it was drawn.
   bool make(int frame) {
     const std::string path = outputs_.frame_path(frame, "png");
@@ -84,6 +113,12 @@ class Playblast {
   double saved_seconds() const { return saved_seconds_; }
 
  private:
+  std::map<std::string, StageKey> keys(const FrameSpan& frames) const {
+    std::map<std::string, StageKey> keys;  // by path
+    for (int frame = frames.first; frame <= frames.last; ++frame)
+      keys[outputs_.frame_path(frame, "png")] = file_key(frame);
+    return keys;
+  }
   StageKey file_key(int frame) const {
     const OutputSettings& output = run_.shot().output;
     KeyHasher key("preview 7");
@@ -130,6 +165,7 @@ int run_preview(const PreviewOptions& options) {
   ShotRun run(shot, session.context());
   session.prepare(outputs, run);
   Playblast playblast(session, run, outputs, options);
+  playblast.remove_outdated(frames);
   int written = 0;
   session.console().begin("frames", frames.count());
   for (int frame = frames.first; frame <= frames.last; ++frame) {
@@ -139,6 +175,7 @@ int run_preview(const PreviewOptions& options) {
     session.console().advance(frame - frames.first + 1,
                               fmt::format("frame {}{}", frame, drawn ? "" : " there already"));
   }
+  playblast.warn_of_leftovers();
   RunReport report = session.report("preview", run);
   report.files_written = written;
   report.files_kept = frames.count() - written;

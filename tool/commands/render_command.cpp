@@ -1,6 +1,10 @@
+#include <functional>
+
 #include <fmt/format.h>
 
+#include "core/base/error.h"
 #include "tool/commands/commands.h"
+#include "tool/commands/picture_wishes.h"
 #include "tool/stages/frame_pipeline.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/simulate_key.h"
@@ -39,24 +43,43 @@ void remove_outdated(const Session& session, PictureStage& pictures, Outputs& ou
   const int removed = pictures.remove_outdated(session.frames().first, session.frames().last);
   if (removed > 0) session.context().log.info(fmt::format("{} outdated pictures removed", removed));
   const ShotSettings& settings = session.shot().settings;
-  outputs.remove_if({outputs.path("mp4")}, [&](const std::string&) {
+  const auto remove_one = [&](const std::string& path, const std::function<bool(const std::string&)>& is_outdated) {
+    if (outputs.remove_if({path}, is_outdated) > 0)
+      session.context().log.info(fmt::format("{} removed: it is of other pictures", path));
+  };
+  remove_one(outputs.path("mp4"), [&](const std::string&) {
     return is_movie_outdated(session.shot(), settings.first_frame, settings.last_frame, outputs);
   });
   // One of the sheet command, of other frames or columns, goes with the pictures that it shows.
-  outputs.remove_if({outputs.path("sheet.png")}, [&](const std::string& sheet) {
+  remove_one(outputs.path("sheet.png"), [&](const std::string& sheet) {
     return session.shot().output.contact_sheet
                ? is_sheet_outdated(session.shot(), frames_of_sheet(session), SheetOptions().columns, outputs)
                : removed > 0 && outputs.entry(sheet).has_value();
   });
 }
 
+/// Another program that renders other settings into the same folder takes the names of these pictures for its own.
+void require_own_pictures(const Session& session, const PictureStage& pictures, Outputs& outputs) {
+  outputs.read_again();
+  const int replaced = pictures.count_replaced(session.frames().first, session.frames().last);
+  if (replaced == 0) return;
+  throw work_error(
+      fmt::format("{}: {} frames were replaced meanwhile by another softreel that renders other settings of the shot "
+                  "there.\n  Give each an --output of its own, and run again.",
+                  outputs.folder(), replaced));
+}
+
 }  // namespace
 
 int run_render(const ShotOptions& options, RenderPart part) {
   if (part == RenderPart::Movie) return run_movie(options);
-  if (options.dry_run) return run_plan(options);
+  if (options.dry_run) {
+    require_any_picture(load_shot_for(options));
+    return run_plan(options);
+  }
   Session session(options);
   const Shot& shot = session.shot();
+  require_any_picture(shot);
   const FrameSpan frames = session.frames();
   ShotRun run(shot, session.context_beside());
   Outputs outputs(session.shot().output.directory, session.shot().settings.name, session.context().log);
@@ -72,12 +95,13 @@ int run_render(const ShotOptions& options, RenderPart part) {
         session.console().advance(++done, fmt::format("frame {} {}", frame, note_of(source)));
         session.keep_within_limit();
       });
+  require_own_pictures(session, pictures, outputs);
   std::vector<std::string> made;
   if (shot.output.png) made.push_back(made_line(outputs, frames, "png"));
   if (shot.output.exr) made.push_back(made_line(outputs, frames, "exr"));
-  const bool whole = frames.first == shot.settings.first_frame && frames.last == shot.settings.last_frame;
   const bool all = part == RenderPart::All;
-  if (all && shot.output.movie && shot.output.png && whole && frames.count() > 1)
+  if (all) say_what_is_not_made(shot, frames, session.context().log);
+  if (all && makes_movie(shot, frames))
     made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
   if (all && shot.output.contact_sheet && shot.output.png)
     made.push_back(make_sheet(shot, frames_of_sheet(session), SheetOptions().columns, outputs, session.context()));

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -9,15 +10,48 @@
 
 namespace softreel {
 
+namespace {
+
+/// A finite number that fills the text.
+std::optional<double> finite_number(const std::string& text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, code] = std::from_chars(text.data(), end, value);
+  if (code != std::errc{} || stopped != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
 CLI::Validator length(const std::string& what) {
   return {[what](std::string& text) {
-            double value = 0;
-            const char* const end = text.data() + text.size();
-            const auto [stopped, code] = std::from_chars(text.data(), end, value);
-            const bool is_length = code == std::errc{} && stopped == end && std::isfinite(value) && value > 0;
-            return is_length ? std::string() : fmt::format("{} is no {}. Accepted: a number above 0.", text, what);
+            const std::optional<double> value = finite_number(text);
+            return value && *value > 0 ? std::string()
+                                       : fmt::format("{} is no {}. Accepted: a number above 0.", text, what);
           },
           "", what};
+}
+
+CLI::Validator size_limit() {
+  return {[](std::string& text) {
+            const std::optional<double> value = finite_number(text);
+            return value && *value >= 0
+                       ? std::string()
+                       : fmt::format("{} is no size. Accepted: a number of GB from 0, which stands for no limit.",
+                                     text);
+          },
+          "", "size"};
+}
+
+void refuse_empty_values(CLI::App& app) {
+  const auto is_text = [](std::string& text) {
+    return text.empty() ? std::string("the value is empty. Accepted: any other; leave the option out for its default.")
+                        : std::string();
+  };
+  // What completes a line half typed is asked of parts that may be empty yet.
+  for (CLI::App* command : app.get_subcommands([](CLI::App* one) { return one->get_name() != "completion"; }))
+    for (CLI::Option* option : command->get_options())
+      if (option->get_items_expected_max() > 0) option->check(CLI::Validator(is_text, "", "not_empty"));
 }
 
 void add_field_options(CLI::App& command, std::vector<std::string>& sets) {
@@ -44,7 +78,7 @@ void add_place_options(CLI::App& command, ShotOptions& options) {
       ->group("Files");
   command.add_option("--cache-limit", options.cache_limit_gb, "size of the cache, 0: no limit [output.cache_limit]")
       ->option_text("GB")
-      ->check(CLI::NonNegativeNumber)
+      ->check(size_limit())
       ->group("Files");
 }
 

@@ -14,6 +14,13 @@ namespace softreel {
 /// with 300 digits.
 CLI::Validator length(const std::string& what = "length");
 
+/// Accepts finite numbers from 0 on, for the same reasons.
+CLI::Validator size_limit();
+
+/// No option of a subcommand, but for completion, takes an empty value: one that a script's unset variable left there
+/// would silently stand for the default. Called when all options are there.
+void refuse_empty_values(CLI::App& app);
+
 /// --set and --quality: fields of a shot. sets are kept by reference; --quality is one of them.
 void add_field_options(CLI::App& command, std::vector<std::string>& sets);
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "core/base/error.h"
 #include "tool/commands/commands.h"
+#include "tool/commands/picture_wishes.h"
 #include "tool/stages/frame_pipeline.h"
 
 namespace softreel {
@@ -10,11 +10,7 @@ int run_sheet(const SheetCommandOptions& options) {
   if (options.shot.dry_run) return run_plan(options.shot);
   Session session(options.shot);
   const Shot& shot = session.shot();
-  if (!shot.output.png)
-    throw input_error(fmt::format(
-        "{}: output.png = false, but a sheet is made of the PNGs.\n  Accepted: true. Remove the field, or add --set "
-        "output.png=true.",
-        shot.path));
+  require_png(shot, "a sheet");
   const std::vector<int> frames = sheet_frames(session.frames().first, session.frames().last, options.sheet.count);
   ShotRun run(shot, session.context_beside());
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);

@@ -176,6 +176,7 @@ void add_picture(const TetrahedralizeOptions& options, const TetMesh& mesh, cons
 }  // namespace
 
 int run_tetrahedralize(const TetrahedralizeOptions& options) {
+  keep_nothing_when_interrupted();
   check_extension(options.output);
   check_cut_picture(options.picture);
   Console console(options.quiet ? Verbosity::Quiet : Verbosity::Normal, isatty(STDERR_FILENO) != 0);

@@ -17,6 +17,7 @@
 
 #include "core/base/timer.h"
 #include "tool/commands/commands.h"
+#include "tool/commands/picture_wishes.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/picture_stage.h"
 
@@ -139,6 +140,7 @@ class Turntable {
 int run_turntable(const ShotOptions& options, int count) {
   Session session(options);
   const Shot& shot = session.shot();
+  require_any_picture(shot);
   const int frame = session.frames().first;
   if (session.frames().count() > 1 && !options.frames.empty())
     session.console().warn(fmt::format("--turntable turns round one frame: {} is taken.", frame));
@@ -171,6 +173,7 @@ int run_turntable(const ShotOptions& options, int count) {
   report.pictures.saved_seconds = turntable.saved_seconds();
   for (const auto& [extension, wanted] : {std::pair("png", shot.output.png), std::pair("exr", shot.output.exr)})
     if (wanted) report.made.push_back(outputs.frame_path(1, extension) + " .. " + outputs.frame_path(count, extension));
+  if (shot.output.movie && !shot.output.png) session.context().log.info(kNoMovieWithoutPngs);
   if (shot.output.movie && shot.output.png && count > 1)
     report.made.push_back(make_movie(shot, 1, count, outputs, session.context()));
   session.finish(report);

@@ -116,6 +116,36 @@ void ExportSeries::write_index() {
   ++counts_.written;
 }
 
+std::map<std::string, StageKey> ExportSeries::sample_keys() {
+  std::map<std::string, StageKey> keys;
+  for (int sample = 0; sample < times_.count; ++sample) keys[path(sample)] = sample_key(sample);
+  return keys;
+}
+
+/// SHOT.BODY.0001.obj, or between frames SHOT.BODY.0001.500.obj.
+bool ExportSeries::is_sample_path(const std::string& path) const {
+  const std::string begin = outputs_.path(stem()), end = "." + format_.name;  // "DIR/SHOT.BODY."
+  if (path.size() <= begin.size() + end.size() || !path.starts_with(begin) || !path.ends_with(end)) return false;
+  const std::string number = path.substr(begin.size(), path.size() - begin.size() - end.size());
+  return number.find_first_not_of("-.0123456789") == std::string::npos;
+}
+
+int ExportSeries::remove_outdated() {
+  return one_file() ? 0 : outputs_.remove_outdated(sample_keys());
+}
+
+std::vector<std::string> ExportSeries::leftovers(ExportSeries& whole) {
+  std::vector<std::string> others;
+  if (one_file()) return others;
+  std::map<std::string, StageKey> own = sample_keys(), all = whole.sample_keys();
+  for (const std::string& path : outputs_.paths()) {
+    if (!is_sample_path(path) || own.contains(path)) continue;
+    const OutputState state = outputs_.claimed_state(path, all[path]);  // no key: of no sample
+    if (state == OutputState::Stale) others.push_back(path);
+  }
+  return others;
+}
+
 std::string ExportSeries::made_line() const {
   if (one_file() || times_.count == 1) return path(0);
   return path(0) + " .. " + path(times_.count - 1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +45,13 @@ class ExportSeries {
   /// After the last sample.
   void finish();
 
+  /// Of a file per sample: removes what is under their names and not theirs, so that a killed run leaves no mixture.
+  /// Returns how many.
+  int remove_outdated();
+  /// Of a file per sample: finished files of this name that are of none of its samples, nor of those of `whole`, the
+  /// series of all frames of the shot. They are of an older state of the shot, or of other sub-frames.
+  std::vector<std::string> leftovers(ExportSeries& whole);
+
   /// "FIRST .. LAST", or the file.
   std::string made_line() const;
   const SeriesCounts& counts() const { return counts_; }
@@ -55,6 +63,8 @@ class ExportSeries {
   bool one_file() const { return format_.file_per != FilePer::Sample; }
   std::string stem() const;
   std::string path(int sample) const;
+  std::map<std::string, StageKey> sample_keys();  ///< by path
+  bool is_sample_path(const std::string& path) const;
   StageKey sample_key(int sample) const;
   double aspect() const;  ///< of the picture, width over height
   const StageKey& whole_key();

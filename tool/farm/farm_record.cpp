@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "tool/stages/json_text.h"
 
 namespace softreel {
 namespace {
@@ -83,14 +84,7 @@ std::string to_json(const FarmRecord& record) {
                           {"frames", {record.frames.first, record.frames.last}},
                           {"settings", settings_json(record.settings)},
                           {"tasks", tasks}};
-  try {
-    return json.dump(1) + "\n";
-  } catch (const nlohmann::json::type_error&) {
-    throw input_error(
-        fmt::format("{}: the record of a submission is UTF-8, and a path or a --set of this shot is not.\n  Rename the "
-                    "file or folder.",
-                    record.shot.shot));
-  }
+  return record_text(json, 1, record.shot.shot, "the record of a submission");
 }
 
 FarmRecord parse_farm_record(const std::string& text, const std::string& path) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "tool/stages/json_text.h"
 
 namespace softreel {
 namespace {
@@ -130,14 +131,7 @@ std::string openjd_template(const FarmShot& shot, const std::vector<FarmJob>& jo
                           {"description", "Made by softreel farm: simulate, frames, movie of one shot."},
                           {"parameterDefinitions", parameters_of(shot)},
                           {"steps", steps}};
-  try {
-    return json.dump(2) + "\n";
-  } catch (const nlohmann::json::type_error&) {
-    throw input_error(fmt::format(
-        "{}: an Open Job Description template is UTF-8, and a path or a --set of this shot is not.\n  Rename "
-        "the file or folder.",
-        shot.shot));
-  }
+  return record_text(json, 2, shot.shot, "an Open Job Description template");
 }
 
 }  // namespace softreel

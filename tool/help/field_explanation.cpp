@@ -113,6 +113,55 @@ bool is_place(const std::string& path, const std::vector<FieldPlace>& places) {
   return std::any_of(places.begin(), places.end(), [&path](const FieldPlace& place) { return place.path == path; });
 }
 
+std::string without_positions(std::string path) {
+  for (std::size_t at = path.find('['); at != std::string::npos; at = path.find('['))
+    path.erase(at, path.find(']', at) - at + 1);
+  return path;
+}
+
+/// The ways to write a place: with and without the name of its body and positions. bodies: names of the shot.
+std::vector<std::string> spellings(const std::string& place, const std::vector<std::string>& bodies) {
+  std::vector<std::string> all{place};
+  for (const std::string& body : bodies) {
+    const std::string name = "body." + body + ".";
+    if (place.starts_with(name)) all.push_back("body." + place.substr(name.size()));
+    if (place.starts_with("body.") && bodies.size() == 1) all.push_back(name + place.substr(5));
+  }
+  const std::size_t count = all.size();
+  for (std::size_t i = 0; i < count; ++i) all.push_back(without_positions(all[i]));
+  return all;
+}
+
+std::vector<std::string> body_names(const TomlValue& document) {
+  std::vector<std::string> names;
+  const TomlValue* bodies = document.find("body");
+  if (bodies == nullptr || bodies->table() == nullptr) return names;
+  for (const TomlEntry& entry : *bodies->table()) names.push_back(key_text(entry.key));
+  return names;
+}
+
+/// Throws if the path names a body, a material or a position that the shot does not have. A path of the schema, and one
+/// with * or [], stands for all places, of which there may be none.
+void require_place(const std::string& path, const FieldText& text, const std::vector<FieldPlace>& places,
+                   const std::vector<std::string>& bodies, const std::string& shot) {
+  if (path == last_name(text.path) || without_positions(path) == without_positions(text.path)) {
+    const bool has_number = path.find('[') != std::string::npos && path.find("[]") == std::string::npos;
+    if (!has_number) return;
+  }
+  if (path.find('*') != std::string::npos || path.find("[]") != std::string::npos) return;
+  std::vector<std::string> known;
+  for (const FieldPlace& place : places) {
+    const std::vector<std::string> all = spellings(place.path, bodies);
+    if (std::find(all.begin(), all.end(), path) != all.end()) return;
+    if (known.size() < kMostRelated) known.push_back(place.path);
+  }
+  if (text.path.starts_with("body.*.") && path == "body." + text.path.substr(7)) return;  // of all bodies
+  throw input_error(fmt::format(
+      "{}: {} has no {}.\n  Accepted: {}. Name one of the shot's, or {} for all.", path, shot, table_of(path),
+      known.empty() ? "nothing, the shot has no table for this field" : fmt::format("{}", fmt::join(known, ", ")),
+      text.path));
+}
+
 /// How a file spells the heading of the table that holds the field.
 std::string heading_of(const FieldText& text) {
   std::string table = table_of(text.path);
@@ -169,6 +218,7 @@ std::vector<FieldValue> field_values_in(const std::string& path, const FieldText
                                         const std::vector<Override>& overrides) {
   const TomlValue document = load_layers(shot, overrides);
   const std::vector<FieldPlace> places = field_places(text.path, document);
+  require_place(path, text, places, body_names(document), shot);
   const bool one_only = is_place(path, places);
   std::vector<FieldValue> values;
   for (const FieldPlace& place : places) {

@@ -9,17 +9,19 @@ namespace softreel {
 namespace {
 
 Topic exit_status() {
-  return {"exit-status",
-          "What the number means that softreel ends with.",
-          "EXIT STATUS",
-          {{"0", "Done."},
-           {"1",
-            "The work failed: a step that cannot be solved, a full disk, a golden image that changed; the message says "
-            "which. What was finished is kept, and the same command goes on there."},
-           {"2",
-            "The input is wrong (an option, a field, a file) or a part is not built in; nothing was begun. The message "
-            "says what is accepted."},
-           {"130", "Interrupted by Ctrl-C; what was finished is kept."}}};
+  return {
+      "exit-status",
+      "What the number means that softreel ends with.",
+      "EXIT STATUS",
+      {{"0", "Done."},
+       {"1",
+        "The work failed: a step that cannot be solved, a full disk or standard output, a golden image that changed, "
+        "pictures that another run replaced; the message says which. What was finished is kept, and the same command "
+        "goes on there."},
+       {"2",
+        "The input is wrong (an option, a field, a file) or a part is not built in; nothing was begun. The message "
+        "says what is accepted."},
+       {"130", "Interrupted by Ctrl-C; what was finished is kept."}}};
 }
 
 }  // namespace

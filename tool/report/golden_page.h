@@ -10,7 +10,8 @@ namespace softreel {
 struct GoldenPageFrame {
   std::string shot;
   int frame = 0;
-  bool changed = false;
+  bool changed = false;        ///< or missing
+  bool missing = false;        ///< there is no golden image
   std::string verdict, cause;  ///< a sentence each
   /// PNG files; empty where there is none. Only those of changed frames are shown.
   std::vector<std::uint8_t> golden, now, difference;

@@ -110,7 +110,7 @@ std::string picture_line(const PictureCounts& counts) {
   };
   add(counts.traced, "traced");
   add(counts.linked, "equal to another and linked");
-  add(counts.developed, "developed again for another view or exposure");
+  add(counts.developed, "developed again without tracing");
   add(counts.recalled, "taken from the cache");
   add(counts.kept, "there already");
   return line.empty() ? line : line + "\n";

@@ -264,7 +264,8 @@ const Table<OutputSettings>& output_table() {
         .add("burn_in", &O::burn_in, toggle(), "", "Writes shot and frame number into the PNG, and so into the movie.")
         .add("contact_sheet", &O::contact_sheet, toggle(), "",
              "Writes SHOT.sheet.png with a small picture of up to 16 frames, too.")
-        .add("movie", &O::movie, toggle(), "", "Joins the frames to a movie, where ffmpeg is installed.")
+        .add("movie", &O::movie, toggle(), "",
+             "Joins the PNGs of all frames to a movie, where ffmpeg is installed; without output.png there is none.")
         .add("cache_limit", &O::cache_limit_gb, number({0, 1e9, false}), "GB",
              "Stored results beyond it are removed, those used longest ago first; 0: no limit.");
     return t;

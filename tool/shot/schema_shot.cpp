@@ -25,7 +25,7 @@ void add_frames(Table<ShotSettings>& table) {
                 "[first, last]",
                 "frames",
                 "[1, 96]",
-                "two whole numbers, the second not below the first",
+                fmt::format("two whole numbers from {} to {}, the second not below the first", -kLastFrame, kLastFrame),
                 "First and last frame of the pictures.",
                 false,
                 false};

@@ -32,7 +32,9 @@ const Table<SelectBox>& box_table() {
         .require("max", &SelectBox::max, vector_of<Vec3>(kAnyNumber), kSelectionUnit, "Highest corner.");
     t.check = [](const Place& place, const TomlValue& value, SelectBox& box) {
       if ((box.min.array() <= box.max.array()).all()) return;
-      throw value_error(place, value, "its min is above its max along an axis", "Exchange the two numbers.");
+      const FieldText text{"", "", "", "", "a min that is not above the max, along each axis", "", false, false};
+      throw value_error({place.path, &text, place.problems}, value, "its min is above its max along an axis",
+                        "Exchange the two numbers.");
     };
     return t;
   }();
@@ -57,7 +59,9 @@ const Table<SelectPlane>& plane_table() {
     t.require("point", &SelectPlane::point, vector_of<Vec3>(kAnyNumber), kSelectionUnit, "A point of the plane.")
         .require("normal", &SelectPlane::normal, vector_of<Vec3>(kAnyNumber), "", "Its normal, of any length above 0.");
     t.check = [](const Place& place, const TomlValue& value, SelectPlane& plane) {
-      if (plane.normal.isZero(0)) throw value_error(place, value, "its normal has no length", "Give a direction.");
+      if (!plane.normal.isZero(0)) return;
+      const FieldText text{"", "", "", "", "a normal of any length above 0", "", false, false};
+      throw value_error({place.path, &text, place.problems}, value, "its normal has no length", "Give a direction.");
     };
     return t;
   }();

@@ -12,6 +12,7 @@
 #include "tool/stages/atomic_file.h"
 #include "tool/stages/byte_hasher.h"
 #include "tool/stages/file_lock.h"
+#include "tool/stages/json_text.h"
 
 namespace softreel {
 namespace fs = std::filesystem;
@@ -33,6 +34,8 @@ std::string settings_id_of(const SettingsSnapshot& settings) {
 
 Outputs::Outputs(std::string folder, std::string shot_name, const Log& log)
     : folder_(std::move(folder)), shot_name_(std::move(shot_name)), log_(log) {
+  require_utf8(shot_name_, "the name of the shot");
+  require_utf8(folder_, "the output folder");
   revision_ = stored_revision();
   contents_ = read();
 }
@@ -75,6 +78,11 @@ Outputs::Contents Outputs::read() const {
 }
 
 void Outputs::set_settings(const SettingsSnapshot& settings) {
+  // Now rather than when the first file is made: the manifest holds them as they are.
+  for (const auto& [field, value] : settings) {
+    require_utf8(field, "a path that the shot reads");
+    require_utf8(value, "a text or a path of the shot");
+  }
   settings_ = settings;
   settings_id_ = settings_id_of(settings);
 }
@@ -196,6 +204,12 @@ int Outputs::remove_outdated(const std::map<std::string, StageKey>& keys) {
     const OutputState state = claimed_state(path, keys.at(path));
     return state == OutputState::Stale || state == OutputState::Unknown;
   });
+}
+
+void Outputs::read_again() {
+  const std::lock_guard lock(mutex_);
+  contents_ = read();
+  revision_ = "";  // of which it is, is not known: the next change reads it under the lock
 }
 
 void Outputs::note_simulation() {

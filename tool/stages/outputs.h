@@ -36,7 +36,8 @@ enum class OutputState { Missing, Unknown, Stale, Damaged, Done };
 /// a file gets its name and its entry, no other process changes or removes either. Thread-safe.
 class Outputs {
  public:
-  /// Reads the manifest if there is one; a damaged one is said, and all files count as unknown.
+  /// Reads the manifest if there is one; a damaged one is said, and all files count as unknown. Throws input_error for
+  /// names that are no UTF-8.
   Outputs(std::string folder, std::string shot_name, const Log& log);
 
   /// "DIR/SHOT.####.EXTENSION"
@@ -46,7 +47,7 @@ class Outputs {
   const std::string& folder() const { return folder_; }
   const std::string& shot_name() const { return shot_name_; }
 
-  /// What files written from now on are made with.
+  /// What files written from now on are made with. Throws input_error for what is no UTF-8.
   void set_settings(const SettingsSnapshot& settings);
 
   /// Reads the file to verify it.
@@ -75,6 +76,9 @@ class Outputs {
   /// Removes what is under these paths and not of these keys: files of an older shot, and files that nobody knows.
   /// Returns how many.
   int remove_outdated(const std::map<std::string, StageKey>& keys);
+
+  /// Takes what other processes have entered in the manifest.
+  void read_again();
 
   /// Last simulation of the shot in this folder: the id of its settings, empty if there was none.
   std::string simulated_settings() const;

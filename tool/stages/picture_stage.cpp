@@ -83,6 +83,19 @@ int PictureStage::remove_outdated(int first, int last) {
   return outputs_.remove_outdated(keys);
 }
 
+int PictureStage::count_replaced(int first, int last) const {
+  int replaced = 0;
+  for (int frame = first; frame <= last; ++frame) {
+    const std::vector<File> wanted = files(frame, trace_key(frame));
+    const bool is_own = std::all_of(wanted.begin(), wanted.end(), [&](const File& file) {
+      const auto entry = outputs_.entry(file.path);
+      return entry && entry->key == file.key;
+    });
+    replaced += is_own ? 0 : 1;
+  }
+  return replaced;
+}
+
 bool PictureStage::recall(int frame, const StageKey& picture) {
   struct Found {
     File file;

@@ -53,6 +53,9 @@ class PictureStage {
   /// that nobody knows. Returns how many.
   int remove_outdated(int first, int last);
 
+  /// Of these frames, those that have a file which is of another key, or of none, in the manifest.
+  int count_replaced(int first, int last) const;
+
   /// Brings the frame's files from the cache under either key, if that can be done.
   bool recall(int frame, const StageKey& picture);
   /// Makes the display picture of the stored scene-linear one, if that is all that is missing.

@@ -61,6 +61,19 @@ TEST(SelectPoints, TakesGroupsNearestPointsAndUnionsOfUsedVerticesOnly) {
   EXPECT_TRUE(select_points({}, strip()).empty());
 }
 
+TEST(SelectPoints, OffersNoGroupOfAMeshThatNamesNone) {
+  SurfaceMesh plain = strip();
+  plain.groups.clear();
+  try {
+    select_points(only({SelectGroup{"head"}}), plain);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("it names none"), std::string::npos) << message;
+    EXPECT_EQ(message.find("Choose one of them"), std::string::npos) << message;
+  }
+}
+
 TEST(SelectPoints, NamesTheNearestGroupForAnUnknownOne) {
   try {
     select_points(only({SelectGroup{"heda"}}), strip());

@@ -185,6 +185,20 @@ TEST_P(InterruptTwice, EndsAtOnceAndLeavesNoLockAndNoMarkOfARun) {
   EXPECT_FALSE(has(".running"));
 }
 
+TEST(InterruptNew, SaysThatNothingIsKept) {
+  const std::string folder = new_folder("interrupt_new");
+  write_text(folder + "/sphere.obj", sphere_obj(kLarge));
+  RunningProgram program("interrupt_new",
+                         words_of(fmt::format("softreel new {0}/sphere.obj -o {0}/new.toml --tets 1000000", folder)));
+  wait_until(program, [&] { return has_started(program); });
+  pause(milliseconds(50));
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("nothing is kept to go on from"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(exists(folder + "/new.toml"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Phases, InterruptTwice, ::testing::Values(kPhases[0]),
                          [](const auto& phase) { return std::string(phase.param.name); });
 INSTANTIATE_TEST_SUITE_P(Phases, Interrupt, ::testing::ValuesIn(kPhases),

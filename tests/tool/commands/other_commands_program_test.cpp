@@ -22,7 +22,10 @@ TEST(Golden, FailsOnChangeAndPassesOnTheSamePicture) {
   };
   const Outcome missing = golden("");
   EXPECT_EQ(missing.status, 1);
-  EXPECT_NE(missing.err.find("--update"), std::string::npos) << missing.err;
+  const std::string none = fmt::format("no golden images yet in {}/golden; --update makes them", folder);
+  EXPECT_NE(missing.err.find(none), std::string::npos) << missing.err;
+  EXPECT_EQ(missing.err.find("changed"), std::string::npos) << missing.err;
+  EXPECT_EQ(missing.err.find("--update"), missing.err.rfind("--update")) << "said more than once: " << missing.err;
   EXPECT_EQ(golden("--update").status, 0);
   EXPECT_TRUE(exists(folder + "/golden/ball.0003.png"));
   EXPECT_EQ(golden("").status, 0);

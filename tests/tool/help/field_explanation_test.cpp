@@ -86,6 +86,25 @@ TEST_F(FieldExplanations, KeepToThePlaceThatIsNamed) {
   ASSERT_EQ(one.size(), 1u);
   EXPECT_EQ(one[0].path, "body.b.tets");
   EXPECT_TRUE(values("light[].power").empty()) << "the shot has no light";
+  EXPECT_EQ(values("body.tets").size(), 2U) << "of all bodies";
+  EXPECT_EQ(values("body.a.pin[0].active").size(), 1U);
+  EXPECT_EQ(values("tets").size(), 2U);
+}
+
+TEST_F(FieldExplanations, RefusePlacesThatTheShotDoesNotHave) {
+  for (const auto& [path, missing] :
+       {std::pair("body.nobody.tets", "s.toml has no body.nobody"), std::pair("light[0].power", "has no light[0]"),
+        std::pair("body.a.pin[7].active", "has no body.a.pin[7]"),
+        std::pair("body.b.pin[0].active", "has no body.b.pin[0]"),
+        std::pair("material.hard.youngs_modulus", "has no material.hard")}) {
+    try {
+      values(path);
+      ADD_FAILURE() << path;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::Input);
+      EXPECT_NE(std::string(error.what()).find(missing), std::string::npos) << error.what();
+    }
+  }
 }
 
 }  // namespace

@@ -136,8 +136,10 @@ TEST_F(ShotMessage, RefusesWhatHasNoMeaning) {
   expect_parts(message(body(pin + "{ unit = \"box\" }\n")), {"s.toml:4:10:", "it has no shape"});
   expect_parts(message(body(pin + "{ all = true, group = \"x\" }\n")), {"it has several shapes"});
   expect_parts(message(body(pin + "[]\n")), {"the list is empty"});
-  expect_parts(message(body(pin + "{ box = { min = [0, 1, 0], max = [1, 0, 1] } }\n")), {"its min is above its max"});
-  expect_parts(message(body(pin + "{ plane = { point = [0, 1, 0], normal = [0, 0, 0] } }\n")), {"no length"});
+  expect_parts(message(body(pin + "{ box = { min = [0, 1, 0], max = [1, 0, 1] } }\n")),
+               {"its min is above its max", "a min that is not above the max"});
+  expect_parts(message(body(pin + "{ plane = { point = [0, 1, 0], normal = [0, 0, 0] } }\n")),
+               {"no length", "of any length above 0"});
   expect_parts(message(body("[[light]]\ntype = \"sun\"\npower = 3\n")),
                {"s.toml:5:9: light[0].power = 3", "a sun has no such field"});
   expect_parts(message(body("[[light]]\ntype = \"area\"\nangle_deg = 3\n")), {"an area light has no such field"});

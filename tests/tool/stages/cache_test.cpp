@@ -224,6 +224,31 @@ TEST(Outputs, RemoveNothingThatAnotherProcessHasJustMade) {
   EXPECT_FALSE(fs::exists(picture));
 }
 
+TEST(Outputs, ReadAgainKnowWhatAnotherProcessHasMadeOfOtherKeys) {
+  const Folder folder("replaced");
+  const Log log;
+  const Bytes bytes{1};
+  Outputs a(folder.path, "shot", log), b(folder.path, "shot", log);
+  const std::string path = a.frame_path(1, "png");
+  a.write(path, "mine", bytes, 0);
+  b.write(path, "other", bytes, 0);
+  EXPECT_EQ(a.entry(path)->key, "mine");
+  a.read_again();
+  EXPECT_EQ(a.entry(path)->key, "other");
+  a.write(a.frame_path(2, "png"), "mine", bytes, 0);
+  EXPECT_TRUE(Outputs(folder.path, "shot", log).is_done(path, "other")) << "what was read again is kept";
+}
+
+TEST(Outputs, RefuseNamesThatTheManifestCannotCarry) {
+  const Folder folder("latin");
+  const Log log;
+  EXPECT_THROW(Outputs(folder.path, "b\xff", log), Error);
+  EXPECT_THROW(Outputs(folder.path + "\xff", "shot", log), Error);
+  Outputs outputs(folder.path, "shot", log);
+  EXPECT_THROW(outputs.set_settings({{"mesh /s/\xff.obj", "key"}}), Error);
+  EXPECT_THROW(outputs.set_settings({{"shot", "mesh = \"\xff\""}}), Error);
+}
+
 TEST(Outputs, OfSeveralProcessesKeepEachOthersEntries) {
   const Folder folder("merged");
   const Log log;

@@ -81,7 +81,7 @@ TEST(GoldenRecordFile, SamplesAreSpreadOverAllVertices) {
 }
 
 TEST(GoldenPage, NamesCannotBreakIt) {
-  const std::string page = golden_page({{"<b>&\"", 3, true, "a < b", "", {}, {1, 2, 3}, {}}});
+  const std::string page = golden_page({{"<b>&\"", 3, true, false, "a < b", "", {}, {1, 2, 3}, {}}});
   EXPECT_EQ(page.find("<b>"), std::string::npos);
   EXPECT_NE(page.find("&lt;b&gt;&amp;&quot;"), std::string::npos);
   EXPECT_NE(page.find("base64,AQID"), std::string::npos);

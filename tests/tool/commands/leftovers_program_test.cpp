@@ -1,0 +1,79 @@
+/// Files of an older state of a shot: removed under the names that a run makes, said where they stay beside them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/program.h"
+
+namespace softreel {
+namespace {
+
+using namespace softreel::testing;
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class Leftovers : public ::testing::Test {
+ protected:
+  Outcome run_shot(const std::string& command, const std::string& options) const {
+    return run(fmt::format("softreel {1} {0}/shot.toml --output {0}/out {2}", folder_, command, options));
+  }
+  std::string file(const std::string& name) const { return folder_ + "/out/" + name; }
+
+  const std::string folder_ = shot_folder("leftovers");
+  /// Another simulation of the same shot.
+  const std::string softer_ = "--set material.soft.youngs_modulus=1e4 ";
+};
+
+TEST_F(Leftovers, ARenderSaysThatItRemovesMovieAndSheetAndMakesNoMovieOfSomeFrames) {
+  const std::string both = "--set output.movie=true --set output.contact_sheet=true ";
+  ASSERT_EQ(run_shot("render", both).status, 0);
+  const Outcome some = run_shot("render", "--set output.movie=true --frames 1 --set output.exposure=1");
+  EXPECT_EQ(some.status, 0) << some.err;
+  for (const char* name : {"ball.mp4", "ball.sheet.png"}) {
+    EXPECT_FALSE(exists(file(name)));
+    EXPECT_TRUE(says(some.err, file(name) + " removed: it is of other pictures")) << some.err;
+  }
+  EXPECT_TRUE(says(some.err, "no movie: it is made when all frames, 1 to 4, are asked for")) << some.err;
+}
+
+TEST_F(Leftovers, ARenderOfExrsSaysThatThereIsNoMovie) {
+  const Outcome outcome =
+      run_shot("render", "--frames 1 --set output.png=false --set output.exr=true --set output.movie=true");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(says(outcome.err, "no movie: it is made of PNG pictures")) << outcome.err;
+}
+
+TEST_F(Leftovers, AnExportOfSomeFramesWarnsOfOlderOnesBesideThem) {
+  const Outcome all = run_shot("export", "");
+  ASSERT_EQ(all.status, 0) << all.err;
+  const Outcome same = run_shot("export", "--frames 2 --quiet");
+  EXPECT_EQ(same.err, "") << "frames of the same state are no leftovers";
+  const Outcome some = run_shot("export", softer_ + "--frames 1-2");
+  EXPECT_EQ(some.status, 0) << some.err;
+  EXPECT_TRUE(says(some.err, "outdated files removed")) << some.err;
+  EXPECT_TRUE(says(some.err, file("ball.ball.0003.obj") + ": this and 1 more files are of an older state")) << some.err;
+  EXPECT_FALSE(says(run_shot("export", softer_).err, "older state"));
+}
+
+TEST_F(Leftovers, AnExportWarnsOfSubFramesThatItDoesNotMake) {
+  ASSERT_EQ(run_shot("export", "--frames 1-2 --subframes 1").status, 0);
+  const Outcome plain = run_shot("export", "--frames 1-2 --quiet");
+  EXPECT_EQ(plain.status, 0) << plain.err;
+  EXPECT_TRUE(says(plain.err, "this and 2 more files are of an older state of the shot or of other sub-frames"))
+      << plain.err;
+}
+
+TEST_F(Leftovers, APreviewOfSomeFramesRemovesTheirMovieAndWarnsOfOlderOnes) {
+  const std::string fast = "--mode fast --set output.movie=true ";
+  if (const Outcome all = run_shot("preview", fast); all.status != 0) GTEST_SKIP() << all.err;
+  const Outcome some = run_shot("preview", fast + "--frames 1 --set output.exposure=1");
+  EXPECT_EQ(some.status, 0) << some.err;
+  EXPECT_TRUE(says(some.err, "1 outdated pictures removed")) << some.err;
+  EXPECT_TRUE(says(some.err, file("ball.preview.mp4") + " removed: it is of other pictures")) << some.err;
+  EXPECT_FALSE(exists(file("ball.preview.mp4")));
+  EXPECT_TRUE(says(some.err, file("ball.preview.0002.png") + ": this and 2 more pictures are of an older")) << some.err;
+}
+
+}  // namespace
+}  // namespace softreel
