@@ -205,13 +205,17 @@ bool LightSet::sample_from(std::size_t k, const Receiver& receiver, float choice
 /// added up: the bits are those of asking them all.
 template <typename Visit>
 void LightSet::for_lamps_near(const Vec3f& position, const Vec3f& direction, float distance, const Visit& visit) const {
-  std::array<Index, kMostPassed> passed{};
+  if (lamp_tree_.empty()) {
+    for (std::size_t k = 0; k < lamps_.size(); ++k) visit(k);
+    return;
+  }
+  std::array<Index, kMostPassed> passed;
   std::size_t count = 0;
   lamp_tree_.visit_along(position, direction, distance, [&](Index lamp) {
     if (count < kMostPassed) passed[count] = lamp;
     ++count;
   });
-  if (lamp_tree_.empty() || count > kMostPassed) {
+  if (count > kMostPassed) {
     for (std::size_t k = 0; k < lamps_.size(); ++k) visit(k);
     return;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/check.h"
 
@@ -30,6 +31,7 @@ SweptGround::SweptGround(const MotionMesh& mesh) {
   const std::size_t row = row_length(positions);
   CHECK(positions.size() % row == 0u);
   CHECK(mesh.triangles.size() == 2 * (row - 1) * (positions.size() / row - 1));
+  CHECK(positions.size() / row <= std::numeric_limits<std::uint16_t>::max());
   cells_ = row - 1;
   const Vec3f width = positions[cells_] - positions[0];
   half_width_ = 0.5f * width.norm();
@@ -45,6 +47,14 @@ SweptGround::SweptGround(const MotionMesh& mesh) {
   const std::size_t last = profile_.size() - 1;
   for (bend_ = 0; bend_ < last && !turned(bend_ + 1, 0);) ++bend_;
   for (wall_ = last; wall_ > bend_ && !turned(wall_ - 1, last);) --wall_;
+  if (bend_ == wall_) return;
+  center_ = Vec2f(profile_[bend_].x(), profile_[wall_].y());
+  radius_ = profile_[wall_].x() - profile_[bend_].x();
+  for (std::size_t place = 0, r = bend_; place <= kPlaces; ++place) {
+    const float along_and_up = 2 * radius_ * static_cast<float>(place) / kPlaces;
+    while (r + 1 < wall_ && (profile_[r + 1] - profile_[bend_]).sum() <= along_and_up) ++r;
+    row_at_[place] = static_cast<std::uint16_t>(r);
+  }
 }
 
 float SweptGround::side(const Line& line, std::size_t row) const {
@@ -71,16 +81,27 @@ void SweptGround::cross_straight(const Line& line, std::size_t first, std::size_
 
 void SweptGround::cross_between(const Line& line, std::size_t first, std::size_t last, Crossing& nearest) const {
   const bool first_side = side(line, first) < 0;
-  // Without branches: where to go on is as good as chance.
-  for (std::size_t rows = last - first; rows > 1;) {
-    const std::size_t half = rows / 2;
-    first += (side(line, first + half) < 0) == first_side ? half : 0;
-    rows -= half;
-  }
+  const auto is_past = [&](std::size_t r) { return (side(line, r) < 0) != first_side; };
+  // Where the line goes from the hollow side out it has been in the circle.
+  std::size_t row = std::clamp(row_of_circle(line, first_side), first, last - 1);
+  while (row > first && is_past(row)) --row;
+  while (row + 1 < last && !is_past(row + 1)) ++row;
+  first = row;
   const Vec2f edge = profile_[first + 1] - profile_[first], to = profile_[first] - line.origin;
   const float sine = cross(line.direction, edge);
   const float share = std::clamp(-cross(line.direction, to) / sine, 0.0f, 1.0f);
   keep_nearer(line, {cross(to, edge) / sine, first, share}, nearest);
+}
+
+std::size_t SweptGround::row_of_circle(const Line& line, bool leaves) const {
+  const Vec2f from_center = line.origin - center_;
+  const float a = line.direction.squaredNorm(), b = from_center.dot(line.direction),
+              c = from_center.squaredNorm() - radius_ * radius_;
+  const float root = std::sqrt(std::max(b * b - a * c, 0.0f));
+  const Vec2f point = from_center + ((leaves ? root : -root) - b) / a * line.direction;
+  const float along_and_up = point.sum() + radius_;
+  const float place = along_and_up * (static_cast<float>(kPlaces) / (2 * radius_));
+  return row_at_[static_cast<std::size_t>(std::min(std::max(0.0f, place), static_cast<float>(kPlaces)))];
 }
 
 std::size_t SweptGround::extreme_row(const Line& line) const {

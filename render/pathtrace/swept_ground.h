@@ -1,6 +1,8 @@
 /// Where rays meet the ground, without a tree.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "render/pathtrace/ray_scene.h"
@@ -9,8 +11,8 @@ namespace softreel {
 
 /// The triangles of ground_mesh, found by arithmetic: all rows of its vertices are the same line, moved along a profile
 /// in the plane of the along and up axes. The profile bends one way only and by a right angle at most, so that a line
-/// meets it twice at most, and its bent part by bisection. Most rays of a picture meet a studio's backdrop: in a tree
-/// it took a quarter of the time of presets/first_pull.toml.
+/// meets it twice at most, and its bent part, an arc, next to where it meets the circle. Most rays of a picture meet a
+/// studio's backdrop: in a tree it took a quarter of the time of presets/first_pull.toml.
 class SweptGround {
  public:
   /// mesh: as ground_mesh makes it.
@@ -46,8 +48,10 @@ class SweptGround {
   void cross_straight(const Line& line, std::size_t first, std::size_t last, int axis, int& found,
                       Crossing& nearest) const;
   void cross_bend(const Line& line, int straight_crossings, Crossing& nearest) const;
-  /// Between two rows that are on different sides of the line.
+  /// Between two rows of the bend that are on different sides of the line.
   void cross_between(const Line& line, std::size_t first, std::size_t last, Crossing& nearest) const;
+  /// The row below the point at which the line meets the arc's circle, or one near it. leaves: the second such point.
+  std::size_t row_of_circle(const Line& line, bool leaves) const;
   /// The row of the bend that is farthest to one side of the line, where the bend runs as the line does.
   std::size_t extreme_row(const Line& line) const;
   /// Side of the line that a row is on, by its sign.
@@ -56,9 +60,15 @@ class SweptGround {
 
   Vec3f across_, along_;
   float half_width_;
-  std::size_t cells_;           ///< across
-  std::vector<Vec2f> profile_;  ///< per row: along, up
-  std::size_t bend_, wall_;     ///< rows where the bend begins and ends; both the last row if there is no wall
+  std::size_t cells_;             ///< across
+  std::vector<Vec2f> profile_;    ///< per row: along, up
+  std::size_t bend_, wall_;       ///< rows where the bend begins and ends; both the last row if there is no wall
+  Vec2f center_ = Vec2f::Zero();  ///< of the bend's arc
+  float radius_ = 0;
+  static constexpr std::size_t kPlaces = 128;
+  /// Row of the bend by along + up from its beginning, which grows evenly enough along an arc; in steps of 2 radii over
+  /// kPlaces.
+  std::array<std::uint16_t, kPlaces + 1> row_at_{};
 };
 
 }  // namespace softreel
