@@ -198,8 +198,9 @@ class Check:
 
 
 def documents():
-    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.md"], cwd=ROOT, check=True,
-                            capture_output=True, text=True).stdout
+    # Of a checkout that another user owns too, as in a container with a mounted folder.
+    listed = subprocess.run(["git", "-c", "safe.directory=*", "ls-files", "-co", "--exclude-standard", "*.md"], cwd=ROOT,
+                            check=True, stdout=subprocess.PIPE, text=True).stdout
     return [path for path in listed.splitlines() if os.path.exists(os.path.join(ROOT, path))]
 
 

@@ -31,8 +31,9 @@ FENCES = [
 
 
 def sources():
-    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.h", "*.cpp"], cwd=ROOT, check=True,
-                            capture_output=True, text=True).stdout
+    # Of a checkout that another user owns too, as in a container with a mounted folder.
+    listed = subprocess.run(["git", "-c", "safe.directory=*", "ls-files", "-co", "--exclude-standard", "*.h", "*.cpp"],
+                            cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
     return [path for path in listed.splitlines() if os.path.exists(os.path.join(ROOT, path))]
 
 
@@ -116,7 +117,12 @@ def main():
     problems = [problem for path in paths for problem in check_file(path)]
     problems += types_defined_twice(paths)
     formatted = subprocess.run(["clang-format", "--dry-run", "-Werror"] + paths, cwd=ROOT, capture_output=True, text=True)
-    problems += [line for line in formatted.stderr.splitlines() if "error:" in line][:20]
+    misformatted = [line for line in formatted.stderr.splitlines() if "error:" in line][:20]
+    if formatted.returncode != 0 and not misformatted:
+        misformatted = ["clang-format ended with status %d: %s" % (formatted.returncode, formatted.stderr[-500:])]
+    problems += misformatted
+    if not paths:
+        problems.append("git lists no source")
     for problem in problems:
         print(problem)
     print("source rules: %d files, %d problems" % (len(paths), len(problems)))

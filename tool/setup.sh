@@ -21,9 +21,13 @@ softreel_install() {
     }
     become=(sudo)
   fi
-  "${become[@]}" apt-get update -qq >&2
-  "${become[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
-    >/dev/null || {
+  # A machine that has just started may be installing updates of its own: its lock is waited for.
+  "${become[@]}" apt-get -o DPkg::Lock::Timeout=300 update -qq >&2 || {
+    echo "apt-get could not fetch the lists of packages; wanted: ${missing[*]}" >&2
+    return 2
+  }
+  "${become[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 install -y -qq \
+    --no-install-recommends "${missing[@]}" >/dev/null || {
     echo "apt-get could not install: ${missing[*]}" >&2
     return 2
   }
@@ -34,13 +38,23 @@ softreel_install_clients() {
   softreel_install tests/clients/packages.txt
   local from=$softreel_root/tests/clients to=$softreel_root/build/clients log
   mkdir -p "$to"
-  cmp -s "$from/package-lock.json" "$to/package-lock.json" && [ -d "$to/node_modules" ] && return 0
+  # What was installed whole, which npm says last: an interrupted installation is begun again.
+  cmp -s "$from/package-lock.json" "$to/installed.json" && [ -d "$to/node_modules" ] && return 0
   cp "$from/package.json" "$from/package-lock.json" "$to"
   log=$(cd "$to" && npm ci --ignore-scripts --no-audit --no-fund 2>&1) || {
     echo "$log" >&2
-    rm -f "$to/package-lock.json"
     return 2
   }
+  cp "$from/package-lock.json" "$to/installed.json"
+}
+
+# Compilers to run at once: as ninja chooses, but for 1.5 GB of memory each, which the largest groups of sources take.
+softreel_jobs() {
+  local by_memory by_cores
+  by_memory=$(awk '/^MemTotal:/ { print int($2 / 1500000) }' /proc/meminfo)
+  by_cores=$(($(nproc) + 2))
+  [ "$by_memory" -ge 1 ] || by_memory=1
+  echo $((by_memory < by_cores ? by_memory : by_cores))
 }
 
 # Configures a build folder: softreel_configure FOLDER [CMake options ...]. Without options, the one cache of build/.
@@ -62,7 +76,7 @@ softreel_build() {
   local folder=$1 log
   shift
   echo "building $folder: $*" >&2
-  log=$(cmake --build "$softreel_root/$folder" --target "$@" 2>&1) || {
+  log=$(cmake --build "$softreel_root/$folder" -j "$(softreel_jobs)" --target "$@" 2>&1) || {
     echo "$log" | tail -n 60 >&2
     return 1
   }

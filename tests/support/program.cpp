@@ -45,7 +45,7 @@ std::string new_folder(const std::string& name) {
 
 Outcome run(const std::string& command_line) {
   const std::string folder = new_folder("run");
-  const std::string script = fmt::format("softreel() {{ exec {} \"$@\"; }}\n({}) >{}/out 2>{}/err </dev/null",
+  const std::string script = fmt::format("softreel() {{ exec '{}' \"$@\"; }}\n({}) >{}/out 2>{}/err </dev/null",
                                          SOFTREEL_PROGRAM, command_line, folder, folder);
   const int status = std::system(script.c_str());
   if (status == -1) throw std::runtime_error("no shell");

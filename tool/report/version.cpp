@@ -131,7 +131,7 @@ VersionFacts version_facts() {
       module_part("embree", "path tracing", SOFTREEL_BUILT_EMBREE, SOFTREEL_EMBREE_VERSION),
       module_part("egl", "preview", SOFTREEL_BUILT_EGL, ""),
       module_part("assimp", "mesh files other than OBJ, PLY, OFF, STL", SOFTREEL_BUILT_ASSIMP, SOFTREEL_ASSIMP_VERSION),
-      find_ffmpeg()};
+      module_part("openvdb", "export of level sets", SOFTREEL_BUILT_OPENVDB, ""), find_ffmpeg()};
   facts.instruction_set = kInstructionSet;
   facts.has_avx512 = __builtin_cpu_supports("avx512f") != 0;
   facts.processor = processor_name();

@@ -36,7 +36,7 @@ json report_of(const Outcome& outcome) {
 
 /// tests/SCRIPT on a file; what it prints.
 json checked(const std::string& script, const std::string& path) {
-  const Outcome outcome = run(fmt::format("python3 {}/tests/{} {}", SOFTREEL_SOURCE_DIR, script, path));
+  const Outcome outcome = run(fmt::format("python3 '{}/tests/{}' {}", SOFTREEL_SOURCE_DIR, script, path));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   return json::parse(outcome.out, nullptr, false);
 }
@@ -210,8 +210,8 @@ TEST(Batch, FailFastStartsNoMoreJobs) {
 TEST(Batch, OnATerminalThereIsALineForEachJobAndOneForAll) {
   const std::string folder = two_shots("terminal");
   const Outcome outcome = run(fmt::format(
-      "cd {} && script -qec '{} batch shot.toml second.toml --output out --jobs 2 --set render.samples=64' log", folder,
-      SOFTREEL_PROGRAM));
+      "cd {} && script -qec '\"{}\" batch shot.toml second.toml --output out --jobs 2 --set render.samples=64' log",
+      folder, SOFTREEL_PROGRAM));
   ASSERT_EQ(outcome.status, 0) << outcome.err << outcome.out;
   const std::string log = read_text(folder + "/log");
   EXPECT_NE(log.find("\033[3A"), std::string::npos) << "three lines were drawn over";

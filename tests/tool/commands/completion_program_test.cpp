@@ -37,7 +37,7 @@ class Bash {
     std::string line;
     for (const std::string& word : words) line += fmt::format(" '{}'", word);
     write_text(folder_ + "/ask.bash",
-               fmt::format("source ./softreel.bash\nCOMP_WORDS=({}{})\nCOMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"
+               fmt::format("source ./softreel.bash\nCOMP_WORDS=('{}'{})\nCOMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))\n"
                            "_softreel\nprintf '%s\\n' \"${{COMPREPLY[@]}}\"\n",
                            SOFTREEL_PROGRAM, line));
     const Outcome outcome = run(fmt::format("cd {} && bash --norc -u ask.bash", folder_));
@@ -104,11 +104,11 @@ TEST(FishCompletion, OffersCommandsOptionsAndFields) {
   if (!is_installed("fish")) GTEST_SKIP() << "fish is not installed";
   const std::string folder = shot_folder("fish");
   const auto offers = [&](const std::string& line) {
-    const Outcome outcome =
-        run(fmt::format("cd {0} && {1} completion fish > s.fish && PATH=\"$(dirname {1}):$PATH\" fish --no-config -c "
-                        "\"source s.fish; complete "
-                        "-C '{2}'\"",
-                        folder, SOFTREEL_PROGRAM, line));
+    const Outcome outcome = run(
+        fmt::format("cd {0} && '{1}' completion fish > s.fish && PATH=\"$(dirname '{1}'):$PATH\" fish --no-config -c "
+                    "\"source s.fish; complete "
+                    "-C '{2}'\"",
+                    folder, SOFTREEL_PROGRAM, line));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return outcome.out;
   };
@@ -122,7 +122,7 @@ TEST(ZshCompletion, IsAScriptThatZshReads) {
   if (!is_installed("zsh")) GTEST_SKIP() << "zsh is not installed";
   const std::string folder = new_folder("zsh");
   const Outcome outcome = run(fmt::format(
-      "cd {0} && {1} completion zsh > _softreel && zsh -n _softreel && zsh -f -c 'autoload -U compinit; compinit -D; "
+      "cd {0} && '{1}' completion zsh > _softreel && zsh -n _softreel && zsh -f -c 'autoload -U compinit; compinit -D; "
       "source ./_softreel; print $_comps[softreel]'",
       folder, SOFTREEL_PROGRAM));
   EXPECT_EQ(outcome.status, 0) << outcome.err;

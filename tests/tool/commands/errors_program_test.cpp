@@ -157,11 +157,12 @@ TEST(ReadOnlyOutput, IsSaidWithTheFolder) {
   const std::string folder = shot_folder("readonly");
   const std::string locked = folder + "/locked";
   // Root may write anywhere: the program runs as nobody.
-  const Outcome probe = run("setpriv --reuid 65534 --clear-groups test -x " SOFTREEL_PROGRAM);
+  const Outcome probe = run("setpriv --reuid 65534 --clear-groups test -x '" SOFTREEL_PROGRAM "'");
   if (probe.status != 0) GTEST_SKIP() << "cannot run the program as another user here: " << probe.err;
   run(fmt::format("mkdir {0}; chmod 555 {0}; chmod 755 {1} {1}/..", locked, folder));
-  const Outcome outcome = run(fmt::format("setpriv --reuid 65534 --clear-groups {} render {}/shot.toml --output {}/out",
-                                          SOFTREEL_PROGRAM, folder, locked));
+  const Outcome outcome =
+      run(fmt::format("setpriv --reuid 65534 --clear-groups '{}' render {}/shot.toml --output {}/out", SOFTREEL_PROGRAM,
+                      folder, locked));
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.err.find(locked), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("Permission denied"), std::string::npos) << outcome.err;

@@ -30,7 +30,7 @@ TEST(Explain, SaysWhatAFieldIsAndWhereItsValueComesFrom) {
 }
 
 TEST(Explain, SaysWhatAQualityChanges) {
-  const std::string shot = SOFTREEL_SOURCE_DIR "/presets/first_pull.toml";
+  const std::string shot = "'" SOFTREEL_SOURCE_DIR "/presets/first_pull.toml'";
   const auto value = [&](const std::string& field, const std::string& options) {
     const Outcome outcome = run(fmt::format("softreel explain {} --shot {} {} --json", field, shot, options));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -39,7 +39,7 @@ TEST(Explain, SaysWhatAQualityChanges) {
   EXPECT_EQ(value("render.scale", "--quality draft"), "0.5");
   EXPECT_EQ(value("render.samples", "--quality final"), "256");
   EXPECT_EQ(value("render.samples", "--set render.samples=5 --quality final"), "5");
-  EXPECT_EQ(value("render.samples", "--quality " SOFTREEL_SOURCE_DIR "/presets/quality/final.toml"), "256");
+  EXPECT_EQ(value("render.samples", "--quality '" SOFTREEL_SOURCE_DIR "/presets/quality/final.toml'"), "256");
   const Outcome said = run("softreel explain render.scale --quality draft --shot " + shot);
   EXPECT_NE(said.out.find("quality/draft.toml:3:9, --quality)"), std::string::npos) << said.out;
   const Outcome unknown = run("softreel render " + shot + " --quality darft");

@@ -22,7 +22,7 @@ constexpr const char* kQuick =
 TEST(NewShotCommands, SurviveAShell) {
   const std::string folder = new_folder("new words");
   const Outcome made =
-      run(fmt::format("softreel new {}/assets/pudding.ply -o \"{}/it's.toml\"", SOFTREEL_SOURCE_DIR, folder));
+      run(fmt::format("softreel new '{}/assets/pudding.ply' -o \"{}/it's.toml\"", SOFTREEL_SOURCE_DIR, folder));
   ASSERT_EQ(made.status, 0) << made.err;
   EXPECT_NE(made.out.find(fmt::format("softreel check '{}/it'\\''s.toml'", folder)), std::string::npos) << made.out;
   EXPECT_NE(read_text(folder + "/it's.toml").find("softreel check 'it'\\''s.toml'"), std::string::npos);
@@ -36,7 +36,7 @@ TEST_P(NewShot, IsSoundAndRendersAsItIs) {
   const std::string mesh = given.starts_with('/') ? given : SOFTREEL_SOURCE_DIR "/assets/" + given;
   if (!fs::exists(mesh)) GTEST_SKIP() << mesh << " is not there: package assimp-testmodels";
   const std::string folder = new_folder("new");
-  const Outcome made = run(fmt::format("softreel new {} -o {}/shot.toml --tets 2500", mesh, folder));
+  const Outcome made = run(fmt::format("softreel new '{}' -o {}/shot.toml --tets 2500", mesh, folder));
   ASSERT_EQ(made.status, 0) << made.err;
   EXPECT_NE(made.out.find("Next: softreel check"), std::string::npos) << made.out;
   const Outcome checked = run(fmt::format("softreel check {}/shot.toml", folder));

@@ -12,7 +12,7 @@ namespace {
 
 using namespace softreel::testing;
 
-constexpr const char* kCreature = SOFTREEL_SOURCE_DIR "/assets/creature.ply";
+constexpr const char* kCreature = "'" SOFTREEL_SOURCE_DIR "/assets/creature.ply'";
 
 /// Decodes, and holds more than one colour.
 void expect_picture(const std::string& path, int width, int height) {

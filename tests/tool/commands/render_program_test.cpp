@@ -94,7 +94,7 @@ TEST(Render, AnInterruptedRunKeepsItsFramesAndTheNextOneEndsEqual) {
     const std::string output = folder + "/out" + signal;
     // Waits for the third picture, so that the signal comes in the middle of the work.
     const Outcome outcome =
-        run(fmt::format("{0} render {1}/shot.toml --output {2} --quiet {3} & pid=$!; "
+        run(fmt::format("'{0}' render {1}/shot.toml --output {2} --quiet {3} & pid=$!; "
                         "while [ ! -e {2}/ball.0003.png ] && kill -0 $pid 2>/dev/null; do sleep 0.01; done; "
                         "kill -{4} $pid; wait $pid",
                         SOFTREEL_PROGRAM, folder, output, more, signal));

@@ -323,7 +323,7 @@ TEST_F(Skipping, FramesAreRenderedWhileLaterOnesSimulate) {
   start("streams");
   const std::string out = folder_ + "/out";
   run(
-      fmt::format("{0} render {1}/shot.toml --output {2} --quiet --set shot.frames='[1,60]' --threads 2 & pid=$!; "
+      fmt::format("'{0}' render {1}/shot.toml --output {2} --quiet --set shot.frames='[1,60]' --threads 2 & pid=$!; "
                   "while [ ! -e {2}/ball.0001.png ] && kill -0 $pid 2>/dev/null; do sleep 0.002; done; kill -9 $pid; "
                   "wait $pid",
                   SOFTREEL_PROGRAM, folder_, out));
