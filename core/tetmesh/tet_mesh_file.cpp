@@ -37,6 +37,11 @@ Bytes encode_gmsh(const TetMesh& mesh) {
     print(bytes, "{} {} 2 1 1 {} {} {} {}\n", e + 1, kGmshTetra, a + 1, b + 1, c + 1, d + 1);
   }
   print(bytes, "$EndElements\n");
+  if (mesh.fill.empty()) return bytes;
+  // Names; times; step, numbers an element, elements.
+  print(bytes, "$ElementData\n1\n\"fill\"\n1\n0\n3\n0\n1\n{}\n", mesh.fill.size());
+  for (std::size_t e = 0; e < mesh.fill.size(); ++e) print(bytes, "{} {}\n", e + 1, mesh.fill[e]);
+  print(bytes, "$EndElementData\n");
   return bytes;
 }
 
@@ -55,10 +60,16 @@ Bytes encode_medit(const TetMesh& mesh) {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_tet_mesh(const TetMesh& mesh, const std::string& extension) {
+std::vector<std::uint8_t> encode_tet_mesh(const TetMesh& mesh, const std::string& extension, const Log& log) {
   if (extension == ".vtu") return encode_as_vtu(mesh);
   if (extension == ".msh") return encode_gmsh(mesh);
-  if (extension == ".mesh") return encode_medit(mesh);
+  if (extension == ".mesh") {
+    if (!mesh.fill.empty())
+      log.warn(
+          "the .mesh file does not say how full the tetrahedra of the embedded mesh are: read again, all count as "
+          "full. Write .vtu or .msh to keep it.");
+    return encode_medit(mesh);
+  }
   throw input_error(
       fmt::format("tetrahedra cannot be written as '{}'. Accepted: .vtu (VTK), .msh (Gmsh 2.2), .mesh "
                   "(Medit). Choose a file name that ends in one of these.",

@@ -1,11 +1,13 @@
 #include "render/image/image_io.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <memory>
 
 #include <ImfChannelList.h>
@@ -95,7 +97,8 @@ EnvironmentImage from_display(const DisplayImage& display) {
   for (std::size_t k = 0; k < pixel_count(display.width, display.height); ++k) {
     const float seen = display.alpha.empty() ? 1.0f : static_cast<float>(display.alpha[k]) / 255;
     const auto linear = [&](std::size_t c) {
-      return seen * srgb_decode(static_cast<float>(display.pixels[3 * k + c]) / 255);
+      const float code = static_cast<float>(display.pixels[3 * k + c]) / 255;
+      return seen * (display.linear ? code : srgb_decode(code));
     };
     image.pixels.emplace_back(linear(0), linear(1), linear(2));
   }
@@ -150,13 +153,22 @@ TexturePicture read_png_16(const std::string& path) {
   return picture;
 }
 
-/// PNG or JPEG: the numbers of its colours as they are stored, whatever gamma or transparency the file tells.
-DisplayImage read_stored(const std::string& path, const char* kind) {
+/// PNG or JPEG: the numbers of its colours as they are stored, whatever gamma or transparency the file tells. values:
+/// of a pixel, 4 with its alpha.
+DisplayImage read_stored(const std::string& path, const char* kind, int values = 3) {
   int width = 0, height = 0, components = 0;
-  stbi_uc* data = stbi_load(path.c_str(), &width, &height, &components, 3);
+  stbi_uc* data = stbi_load(path.c_str(), &width, &height, &components, values);
   const StbPixels owner(data, &stbi_image_free);
   if (data == nullptr) throw unreadable_picture(path, stbi_failure_reason(), kind);
-  return {width, height, {data, data + 3 * pixel_count(width, height)}};
+  return {width, height, {data, data + static_cast<std::size_t>(values) * pixel_count(width, height)}};
+}
+
+/// Whether a PNG says that its values are linear.
+bool has_linear_values(const std::string& path) {
+  std::array<std::uint8_t, 64> beginning{};
+  std::ifstream(path, std::ios::binary)
+      .read(reinterpret_cast<char*>(beginning.data()), static_cast<std::streamsize>(beginning.size()));
+  return is_linear_png(beginning);
 }
 
 void require_finite(const EnvironmentImage& image, const std::string& path) {
@@ -173,8 +185,9 @@ void require_finite(const EnvironmentImage& image, const std::string& path) {
 
 std::vector<std::uint8_t> encode_png(const DisplayImage& image, const Threads* threads) {
   CHECK(image.pixels.size() == 3 * pixel_count(image.width, image.height));
-  if (image.alpha.empty()) return png_file(image.width, image.height, 3, image.pixels, threads);
-  return png_file(image.width, image.height, 4, interleaved(image), threads);
+  const PngValues values = image.linear ? PngValues::Linear : PngValues::Srgb;
+  if (image.alpha.empty()) return png_file(image.width, image.height, 3, image.pixels, values, threads);
+  return png_file(image.width, image.height, 4, interleaved(image), values, threads);
 }
 
 std::vector<std::uint8_t> encode_exr(const Image& image) {
@@ -223,9 +236,15 @@ DisplayImage read_png(const std::string& path) {
   header.format = has_alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
   DisplayImage image{static_cast<int>(header.width), static_cast<int>(header.height), {}};
   const std::size_t pixels = pixel_count(image.width, image.height), values = has_alpha ? 4 : 3;
-  image.pixels.resize(values * pixels);
-  if (png_image_finish_read(&header, nullptr, image.pixels.data(), 0, nullptr) == 0)
-    throw unreadable_picture(path, header.message, "a complete PNG picture");
+  image.linear = has_linear_values(path);
+  if (image.linear) {  // libpng would take them through the sRGB curve
+    png_image_free(&header);
+    image.pixels = read_stored(path, "a complete PNG picture", static_cast<int>(values)).pixels;
+  } else {
+    image.pixels.resize(values * pixels);
+    if (png_image_finish_read(&header, nullptr, image.pixels.data(), 0, nullptr) == 0)
+      throw unreadable_picture(path, header.message, "a complete PNG picture");
+  }
   if (!has_alpha) return image;
   image.alpha.resize(pixels);
   for (std::size_t k = 0; k < pixels; ++k) {

@@ -24,13 +24,15 @@ struct DisplayImage {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixels;
   std::vector<std::uint8_t> alpha = {};  ///< height x width, not premultiplied; empty: opaque
+  bool linear = false;                   ///< the pixels are linear values; false: sRGB code values
 };
 
 /// The picture on middle grey where it is not opaque, so that shadows caught in the alpha are seen and compared.
 DisplayImage over_grey(DisplayImage image);
 
 /// Channels R, G, B times 2^exposure, through the view transform, rounded to 8 bits (no dithering: equal frames are
-/// equal bits). A channel A becomes the alpha; the colours are divided by it first. threads: as of encode_png.
+/// equal bits). A channel A becomes the alpha; the colours are divided by it first. What is no number becomes 0, an
+/// alpha too. threads: as of encode_png.
 DisplayImage to_display(const Image& image, ViewTransform view, float exposure, const Threads* threads = nullptr);
 
 /// Bytes of a PNG / EXR file; the caller writes them, so that all files of a run are written in one way. The bytes

@@ -19,7 +19,8 @@ constexpr std::size_t kStrip = 1 << 18;
 constexpr int kLevel = Z_BEST_SPEED;
 
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-constexpr std::uint8_t kPerceptual = 0;                            ///< rendering intent
+constexpr std::uint8_t kPerceptual = 0;                                                  ///< rendering intent
+constexpr std::array<std::uint8_t, 8> kLinear = {'g', 'A', 'M', 'A', 0, 1, 0x86, 0xa0};  ///< of 1
 constexpr std::array<std::uint8_t, 2> kZlibHeader = {0x78, 0x01};  ///< window of 32 kB, quick compression
 
 struct Strip {
@@ -115,7 +116,7 @@ void add_data(std::vector<std::uint8_t>& file, std::vector<Strip>& strips) {
 }  // namespace
 
 std::vector<std::uint8_t> png_file(int width, int height, int components, std::span<const std::uint8_t> pixels,
-                                   const Threads* threads) {
+                                   PngValues values, const Threads* threads) {
   CHECK(components >= 3);
   CHECK(components <= 4);
   const std::size_t row = static_cast<std::size_t>(width) * static_cast<std::size_t>(components);
@@ -135,10 +136,20 @@ std::vector<std::uint8_t> png_file(int width, int height, int components, std::s
   }
   std::vector<std::uint8_t> file(kSignature.begin(), kSignature.end());
   add_chunk(file, "IHDR", image_header(width, height, components));
-  add_chunk(file, "sRGB", std::array{kPerceptual});
+  if (values == PngValues::Srgb)
+    add_chunk(file, "sRGB", std::array{kPerceptual});
+  else
+    add_chunk(file, "gAMA", std::span(kLinear).subspan<4>());
   add_data(file, strips);
   add_chunk(file, "IEND", {});
   return file;
+}
+
+bool is_linear_png(std::span<const std::uint8_t> beginning) {
+  constexpr std::size_t kHeader = 13, kName = kSignature.size() + 12 + kHeader + 4;  // length, name and CRC: 12
+  return beginning.size() >= kName + kLinear.size() &&
+         std::equal(kSignature.begin(), kSignature.end(), beginning.begin()) &&
+         std::equal(kLinear.begin(), kLinear.end(), beginning.begin() + kName);
 }
 
 }  // namespace softreel

@@ -107,6 +107,7 @@ DisplayImage to_display(const Image& image, ViewTransform view, float exposure, 
   CHECK(b != nullptr);
   const float scale = std::exp2(exposure);
   DisplayImage out{image.width, image.height, {}};
+  out.linear = view == ViewTransform::Raw;
   out.pixels.resize(3 * r->pixels.size());
   const Channel* a = image.find("A");
   if (a != nullptr) out.alpha.resize(r->pixels.size());
@@ -114,11 +115,14 @@ DisplayImage to_display(const Image& image, ViewTransform view, float exposure, 
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
       Vec3f linear(r->pixels[k], g->pixels[k], b->pixels[k]);
       if (a != nullptr) {
-        const float alpha = std::clamp(a->pixels[k], 0.0f, 1.0f);
+        const float alpha = a->pixels[k] > 0 ? std::min(a->pixels[k], 1.0f) : 0.0f;  // 0 of what is no number
         out.alpha[k] = static_cast<std::uint8_t>(std::lround(255 * alpha));
         if (alpha > 0) linear /= alpha;
       }
-      const Vec3f display = apply_view(view, scale * linear);
+      linear *= scale;
+      for (int c = 0; c < 3; ++c)
+        if (std::isnan(linear[c])) linear[c] = 0;
+      const Vec3f display = apply_view(view, linear);
       for (int c = 0; c < 3; ++c)
         out.pixels[3 * k + static_cast<std::size_t>(c)] =
             view == ViewTransform::Raw ? to_byte(display[c]) : srgb_byte(display[c]);

@@ -21,14 +21,43 @@ std::optional<double> number_in(const fs::path& path) {
   return value;
 }
 
+/// How a version of control groups calls what it says of a group's memory.
+struct GroupFiles {
+  const char *limit, *used;
+  const char *inactive_files, *active_files;  ///< in memory.stat
+};
+constexpr GroupFiles kVersion1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file",
+                               "total_active_file"};
+constexpr GroupFiles kVersion2{"memory.max", "memory.current", "inactive_file", "active_file"};
+/// Version 1 says the largest number of its pages where there is no limit.
+constexpr double kNoLimit = 4e18;
+
 /// Of a group's memory, what its files take: it goes as soon as something else needs it.
-double file_cache_of(const fs::path& group) {
+double file_cache_of(const fs::path& group, const GroupFiles& files) {
   std::ifstream in(group / "memory.stat");
   std::string word;
   double bytes = 0, value = 0;
   while (in >> word >> value)
-    if (word == "inactive_file" || word == "active_file") bytes += value;
+    if (word == files.inactive_files || word == files.active_files) bytes += value;
   return bytes;
+}
+
+/// Of the group with this path below `root`, and of those above it.
+double left_by(const std::string& path, const fs::path& root, const GroupFiles& files) {
+  double left = std::numeric_limits<double>::infinity();
+  fs::path group = root / fs::path(path).relative_path();
+  while (true) {
+    const auto limit = number_in(group / files.limit), used = number_in(group / files.used);
+    if (limit && used && *limit < kNoLimit)
+      left = std::min(left, std::max(0.0, *limit - std::max(0.0, *used - file_cache_of(group, files))));
+    if (group == root || !group.has_relative_path()) return left;
+    group = group.parent_path();
+  }
+}
+
+/// Whether memory is among the controllers "cpu,memory".
+bool has_memory(const std::string& controllers) {
+  return ("," + controllers + ",").find(",memory,") != std::string::npos;
 }
 
 }  // namespace
@@ -38,14 +67,11 @@ double left_by_control_groups(const std::string& membership, const std::string& 
   std::ifstream in(membership);
   std::string line;
   while (std::getline(in, line)) {
-    if (!line.starts_with("0::")) continue;
-    fs::path group = fs::path(root) / fs::path(line.substr(3)).relative_path();
-    while (true) {
-      const auto limit = number_in(group / "memory.max"), used = number_in(group / "memory.current");
-      if (limit && used) left = std::min(left, std::max(0.0, *limit - std::max(0.0, *used - file_cache_of(group))));
-      if (group == root || !group.has_relative_path()) break;
-      group = group.parent_path();
-    }
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);  // NUMBER:CONTROLLERS:PATH
+    if (second == std::string::npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1), path = line.substr(second + 1);
+    if (controllers.empty()) left = std::min(left, left_by(path, root, kVersion2));
+    if (has_memory(controllers)) left = std::min(left, left_by(path, fs::path(root) / "memory", kVersion1));
   }
   return left;
 }

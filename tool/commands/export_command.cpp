@@ -1,5 +1,6 @@
 #include <chrono>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@
 #include "core/base/timer.h"
 #include "tool/commands/commands.h"
 #include "tool/export/body_samples.h"
+#include "tool/export/export_look.h"
 #include "tool/export/export_series.h"
 
 namespace softreel {
@@ -45,6 +47,16 @@ void warn_of_leftovers(std::vector<ExportSeries>& series, std::vector<ExportSeri
       "frames, or remove what you do not want.",
       leftovers.front(),
       leftovers.size() == 1 ? "this file is" : fmt::format("this and {} more files are", leftovers.size() - 1)));
+}
+
+void warn_of_lost_looks(const std::vector<const ExportFormat*>& formats, const Shot& shot, const Log& log) {
+  std::set<std::string> worn;
+  for (const BodySettings& body : shot.bodies) worn.insert(body.material);
+  for (const ExportFormat* format : formats)
+    for (const std::string& name : worn) {
+      const std::string lost = format->needs_look ? lost_look(format->name, name, shot.materials.at(name)) : "";
+      if (!lost.empty()) log.warn(lost);
+    }
 }
 
 /// Takes the samples of a body, frame by frame, to the series that want them.
@@ -143,6 +155,7 @@ int run_export(const ExportOptions& options) {
   outputs.note_simulation();
   std::vector<ExportSeries> series = make_series(formats, settings, frames, run, outputs);
   remove_outdated(series, session.context().log);
+  warn_of_lost_looks(formats, shot, session.context().log);
   std::vector<BodyExport> bodies;
   for (std::size_t b = 0; b < run.body_count(); ++b) bodies.emplace_back(b, settings, frames, run, series);
   session.console().begin("frames", session.frames().count());

@@ -150,11 +150,23 @@ void say_submitted(const FarmedShot& shot, const FarmPlan& plan, const std::stri
   }
 }
 
+/// Which values of the submission hold beside new ones; paths in these start where those do.
+void say_kept_sets(const FarmedShot& shot, const FarmOptions& options, Console& console) {
+  if (options.shot.sets.empty() || shot.kept_sets().empty()) return;
+  std::string kept;
+  for (const std::string& set : shot.kept_sets()) kept += " --set " + shell_quoted(set);
+  console.info(fmt::format("{}: besides what is given now, as it was submitted:{}; relative paths start in {}",
+                           shot.name(), kept, shot.site().directory));
+}
+
 /// Submits what is missing of a shot, or shows it. False if nothing is.
 bool submit(FarmedShot& shot, const FarmOptions& options, const std::optional<Queue>& queue, Console& console) {
   const std::string engine = engine_of(options, shot);
   const bool to_slurm = engine == "slurm";
-  if (options.retry) require_record(shot);
+  if (options.retry) {
+    require_record(shot);
+    say_kept_sets(shot, options, console);
+  }
   std::vector<TaskStatus> statuses;
   if (queue && shot.record() && shot.record()->engine == "slurm") statuses = statuses_of(shot, queue);
   if (!options.retry && !options.shot.dry_run) require_idle(shot, statuses);

@@ -12,6 +12,7 @@
 #include "tool/commands/plan_estimate.h"
 #include "tool/report/version.h"
 #include "tool/shot/shot_layers.h"
+#include "tool/shot/shot_load.h"
 #include "tool/stages/atomic_file.h"
 #include "tool/stages/process.h"
 #include "tool/stages/scene_stage.h"
@@ -62,6 +63,16 @@ std::string new_token() {
   return fmt::format("farm-{:08x}{:08x}", random(), random());
 }
 
+/// Those of before, but for fields that are given anew.
+std::vector<std::string> sets_beside(const std::vector<std::string>& given, std::vector<std::string> before) {
+  const auto path_of = [](const std::string& set) { return parse_override(set).path; };
+  std::erase_if(before, [&](const std::string& old) {
+    return std::any_of(given.begin(), given.end(),
+                       [&](const std::string& set) { return path_of(set) == path_of(old); });
+  });
+  return before;
+}
+
 /// Another working directory while the object lives: paths in --set are relative to it.
 class WorkingDirectory {
  public:
@@ -70,8 +81,8 @@ class WorkingDirectory {
     fs::current_path(folder, failed);
     if (failed)
       throw input_error(fmt::format(
-          "{}: the shot was submitted from this folder, which cannot be entered: {}.\n  Give --set again to go on "
-          "without it.",
+          "{}: the shot was submitted from this folder, where relative paths in its --set start; it cannot be entered: "
+          "{}.\n  Accepted: a folder that is there. Make it, or submit the shot anew, without --retry.",
           folder, failed.message()));
   }
   ~WorkingDirectory() {
@@ -109,7 +120,6 @@ FarmedShot::FarmedShot(const FarmOptions& options, const std::string& shot) : se
 /// The record of a shot that can be read, or is called as it was submitted, with the submission's --set only. False
 /// unless the output folder has exactly one of this shot.
 bool FarmedShot::take_only_record(const ShotOptions& one) {
-  if (!one.sets.empty()) return false;
   std::vector<FarmRecord> records;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(absolute(output_of(one)) + "/.farm", none)) {
@@ -131,12 +141,13 @@ void FarmedShot::continue_record(const FarmOptions& options, ShotOptions one) {
   if (one.frames.empty()) one.frames = fmt::format("{}-{}", record_->frames.first, record_->frames.last);
   if (one.cache_limit_gb < 0) one.cache_limit_gb = record_->shot.cache_limit_gb;
   const FarmShot before = site_;
-  if (one.sets.empty() && !record_->shot.sets.empty()) {
-    one.sets = record_->shot.sets;
-    const WorkingDirectory there(record_->shot.directory);
+  kept_sets_ = sets_beside(one.sets, record_->shot.sets);
+  if (kept_sets_.empty()) {
     open(one);
     find_site(one);
   } else {
+    one.sets.insert(one.sets.begin(), kept_sets_.begin(), kept_sets_.end());
+    const WorkingDirectory there(record_->shot.directory);
     open(one);
     find_site(one);
   }

@@ -17,7 +17,8 @@ namespace softreel {
 class FarmedShot {
  public:
   /// Reads the shot, and the record of its last submission if there is one. To ask how that fares, or to retry, the
-  /// shot is taken with the submission's --set, --frames and --cache unless others are given.
+  /// shot is taken with the submission's --frames and --cache unless others are given, and with its --set beside those
+  /// given; relative paths in any of them start where the shot was submitted.
   FarmedShot(const FarmOptions& options, const std::string& shot);
 
   const Session& session() const { return *session_; }
@@ -28,6 +29,8 @@ class FarmedShot {
   /// What was given now, over what the record has if this is a retry.
   const FarmSettings& settings() const { return settings_; }
   const std::optional<FarmRecord>& record() const { return record_; }
+  /// Values of the submission that hold beside those given now.
+  const std::vector<std::string>& kept_sets() const { return kept_sets_; }
 
   ShotProgress progress(Thoroughness how);
   FarmEstimate estimate(int cpus);
@@ -62,6 +65,7 @@ class FarmedShot {
   FarmShot site_;
   FarmSettings settings_;
   std::optional<FarmRecord> record_;
+  std::vector<std::string> kept_sets_;
 };
 
 }  // namespace softreel

@@ -57,6 +57,7 @@ int run_movie(const ShotOptions& options) {
   const SceneStage scenes(run);
   const PictureStage pictures(scenes, shot, outputs, session.context());
   require_pictures(session, pictures);
+  session.remove_pictures_outside(outputs);
   std::vector<std::string> made;
   if (wanted.movie) made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
   const SheetOptions sheet;

@@ -123,6 +123,7 @@ class Playblast {
     const OutputSettings& output = run_.shot().output;
     KeyHasher key("preview 7");
     key.add(scenes_.preview_key(frame)).add(output.view).add(output.exposure).add(fast_).add(wireframe_);
+    if (output.view == ViewTransform::Raw) key.add("linear");
     gizmos_.add_key(key, frame);
     if (cut_) cut_->add_key(key);
     if (output.burn_in) {
@@ -137,6 +138,7 @@ class Playblast {
     DisplayImage picture =
         preview_->draw(scene, shot.render.params.width, shot.render.params.height, shot.output.view,
                        static_cast<float>(shot.output.exposure), {fast_, wireframe_, std::move(marks)});
+    picture.linear = shot.output.view == ViewTransform::Raw;
     scenes_.draw_legend(picture);
     if (shot.output.burn_in) burn_in(picture, frame_words(shot.settings, frame));
     return picture;
@@ -176,13 +178,13 @@ int run_preview(const PreviewOptions& options) {
                               fmt::format("frame {}{}", frame, drawn ? "" : " there already"));
   }
   playblast.warn_of_leftovers();
+  session.remove_pictures_outside(outputs);
   RunReport report = session.report("preview", run);
   report.files_written = written;
   report.files_kept = frames.count() - written;
   report.files_saved_seconds = playblast.saved_seconds();
   report.made.push_back(outputs.frame_path(frames.first, "png") + " .. " + outputs.frame_path(frames.last, "png"));
-  const bool whole = frames.first == shot.settings.first_frame && frames.last == shot.settings.last_frame;
-  if (shot.output.movie && whole && frames.count() > 1)
+  if (shot.output.movie && session.is_whole() && frames.count() > 1)
     report.made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
   session.finish(report);
   return 0;

@@ -96,6 +96,7 @@ int run_render(const ShotOptions& options, RenderPart part) {
         session.keep_within_limit();
       });
   require_own_pictures(session, pictures, outputs);
+  session.remove_pictures_outside(outputs);
   std::vector<std::string> made;
   if (shot.output.png) made.push_back(made_line(outputs, frames, "png"));
   if (shot.output.exr) made.push_back(made_line(outputs, frames, "exr"));

@@ -85,13 +85,25 @@ std::vector<CacheItem> Session::items(ShotRun& run, Outputs& outputs) {
   return items;
 }
 
+bool Session::is_whole() const {
+  return frames_.first == shot_.settings.first_frame && frames_.last == shot_.settings.last_frame;
+}
+
 CacheUse& Session::prepare(Outputs& outputs, ShotRun& run) {
   require_writable(outputs.folder());
   sweep_temporaries(outputs.folder());
   outputs.set_settings(snapshot(run));
+  outputs_ = &outputs;
   use_.emplace(cache_, shot_.path, shot_.output.directory);
   use_->claim(items(run, outputs));
   return *use_;
+}
+
+void Session::remove_pictures_outside(Outputs& outputs) {
+  if (!is_whole()) return;
+  const int removed = outputs.remove_pictures_outside(frames_.first, frames_.last);
+  if (removed > 0)
+    log_.info(fmt::format("{} outdated pictures removed: they are of frames that the shot no longer has", removed));
 }
 
 double Session::cache_limit() const {
@@ -139,6 +151,8 @@ void Session::finish(const RunReport& report) {
                       cache_.folder(), format_bytes(bytes), format_bytes(limit)));
   }
   use_.reset();
+  // Not after some of the frames: a farm has many such runs, and the manifest is as long as the shot.
+  if (outputs_ != nullptr && is_whole()) outputs_->fold();
   const std::filesystem::path folder(shot_.output.directory);
   write_file((folder / (shot_.settings.name + ".resolved.toml")).string(), to_toml(shot_));
   write_file(report_path(), to_json(report) + "\n");

@@ -48,6 +48,8 @@ class Session {
 
   const Shot& shot() const { return shot_; }
   const FrameSpan& frames() const { return frames_; }
+  /// Whether these are all frames of the shot.
+  bool is_whole() const;
   Console& console() { return console_; }
   const RunContext& context() const { return context_; }
   /// The same with threads of their own, for work beside that of `context`.
@@ -55,8 +57,10 @@ class Session {
 
   /// Before files are made: throws work_error if the folder cannot be written, removes what killed runs left there,
   /// tells the manifest the settings that its files are made with, and the cache what the shot needs, for as long as
-  /// the session lives.
+  /// the session lives. outputs: kept by reference until `finish`.
   CacheUse& prepare(Outputs& outputs, ShotRun& run);
+  /// After all frames of the shot: removes the pictures of others that it once had, and says so.
+  void remove_pictures_outside(Outputs& outputs);
   /// Everything that the cache keeps for the shot, pictures included.
   static std::vector<CacheItem> items(ShotRun& run, Outputs& outputs);
   /// Cuts the cache to its limit if it has grown by much since the last time.
@@ -82,6 +86,7 @@ class Session {
   Cache cache_;
   RunContext context_, context_beside_;
   std::optional<CacheUse> use_;
+  Outputs* outputs_ = nullptr;  ///< what was prepared; null: nothing is made
   std::int64_t stored_at_last_cut_ = 0;
   std::chrono::steady_clock::time_point start_;
 };

@@ -184,7 +184,8 @@ int run_tetrahedralize(const TetrahedralizeOptions& options) {
   const bool is_given = is_tet_mesh_file(options.mesh);
   Result result = (is_given ? take_given : fill)(options, threads, console.log());
   result.quality = measure_quality(result.mesh, threads);
-  write_file(options.output, encode_tet_mesh(result.mesh, std::filesystem::path(options.output).extension().string()));
+  const std::string extension = std::filesystem::path(options.output).extension().string();
+  write_file(options.output, encode_tet_mesh(result.mesh, extension, console.log()));
   if (options.json) {
     std::printf("%s\n", to_json(options, result).c_str());
   } else {

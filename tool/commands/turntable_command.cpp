@@ -44,6 +44,7 @@ Camera turned(Camera camera, double share) {
 StageKey file_key(const char* extension, const StageKey& content, const Shot& shot, const BurnIn& words) {
   KeyHasher key(fmt::format("turntable {} 2", extension));
   key.add(content).add(shot.output.view).add(shot.output.exposure).add(shot.output.burn_in);
+  if (shot.output.view == ViewTransform::Raw) key.add("linear");
   if (shot.output.burn_in) key.add(words.left).add(words.right);
   return key.key();
 }

@@ -35,7 +35,9 @@ ExportBody export_body(const ExportSettings& settings, const ShotRun& run, std::
   result.name = run.settings(body).name;
   result.mesh = &loaded.file_mesh;
   result.material = run.settings(body).material;
-  result.appearance = appearance_at(run.shot().materials.at(result.material), frame);
+  const MaterialSettings& material = run.shot().materials.at(result.material);
+  result.appearance = appearance_at(material, frame);
+  result.textures = material.textures;
   const Placement world = world_placement(settings);
   const bool in_object_space = settings.space == ExportSpace::Object;
   if (in_object_space)

@@ -7,6 +7,7 @@
 
 #include "core/base/check.h"
 #include "tool/export/body_samples.h"
+#include "tool/stages/appearance_key.h"
 #include "tool/stages/byte_hasher.h"
 #include "tool/stages/simulate_key.h"
 
@@ -26,6 +27,17 @@ SimulatedFrame simulated_frame(const ExportFrames& frames, int per_frame, int sa
 void add(KeyHasher& key, const Camera& c) {
   key.add(c.position).add(c.target).add(c.up).add(c.focal_length_mm).add(c.sensor_width_mm).add(c.f_number);
   key.add(c.focus_distance);
+}
+
+/// With the bytes of its textures.
+StageKey look_key(ExportBody body) {
+  KeyHasher key("export look 1");
+  key.add(body.material);
+  add(key, body.appearance);
+  TextureSettings& t = body.textures;
+  key.add(t.wrap).add(t.scale.x()).add(t.scale.y()).add(t.offset.x()).add(t.offset.y()).add(t.normal_strength);
+  for (const std::string* path : t.paths()) key.add(*path).add(path->empty() ? StageKey() : hash_file(*path));
+  return key.key();
 }
 
 }  // namespace
@@ -54,7 +66,10 @@ ExportSeries::ExportSeries(const ExportFormat& format, const ExportSettings& set
       bodies_(std::move(bodies)),
       run_(run),
       outputs_(outputs),
-      camera_(export_camera(run)) {}
+      camera_(export_camera(run)) {
+  if (!format.needs_look) return;
+  for (const std::size_t body : bodies_) look_keys_.push_back(look_key(export_body(settings, run, body, times_.first)));
+}
 
 ExportSeries::ExportSeries(ExportSeries&&) noexcept = default;
 ExportSeries::~ExportSeries() = default;
@@ -167,7 +182,7 @@ std::string ExportSeries::path(int sample) const {
 }
 
 StageKey ExportSeries::sample_key(int sample) const {
-  KeyHasher key("export 4");
+  KeyHasher key("export 5");
   key.add(format_.name).add(format_.version).add(settings_.space).add(settings_.meters_per_unit).add(settings_.up);
   key.add(settings_.normals).add(format_.has_seconds ? settings_.fps : 0.0).add(times_.frame(sample));
   const SimulatedFrame simulated = simulated_frame(frames_, times_.per_frame, sample);
@@ -176,10 +191,8 @@ StageKey ExportSeries::sample_key(int sample) const {
     key.add(run_.settings(body).name).add(run_.loaded(body).file_key).add(run_.loaded(body).key);
     key.add(simulation.filled_key()).add(simulation.frame_key(simulated.frame));
     if (simulated.is_between) key.add(simulation.frame_key(simulated.frame - 1));
-    if (!format_.needs_look) continue;
-    const Appearance look = export_body(settings_, run_, body, times_.first).appearance;
-    key.add(look.base_color).add(look.roughness).add(look.metallic).add(run_.settings(body).material);
   }
+  for (const StageKey& look : look_keys_) key.add(look);
   if (format_.needs_camera) {
     add(key, camera_(times_.frame(sample)));
     key.add(aspect());

@@ -81,8 +81,9 @@ class ExportSeries {
   ShotRun& run_;
   Outputs& outputs_;
   std::function<Camera(double frame)> camera_;
-  StageKey whole_key_;             ///< empty until it is needed
-  std::optional<bool> wants_all_;  ///< of a single file
+  std::vector<StageKey> look_keys_;  ///< per body; none if the format has no looks
+  StageKey whole_key_;               ///< empty until it is needed
+  std::optional<bool> wants_all_;    ///< of a single file
   std::unique_ptr<Growing> growing_;
   SeriesCounts counts_;
 };

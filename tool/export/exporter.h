@@ -13,6 +13,7 @@
 #include "core/mesh/surface_mesh.h"
 #include "render/scene/camera.h"
 #include "render/scene/material.h"
+#include "tool/shot/shot.h"
 #include "tool/stages/body_stage.h"
 
 namespace softreel {
@@ -65,6 +66,7 @@ struct ExportBody {
   const SurfaceMesh* mesh = nullptr;  ///< of the file, in its own unit; `triangles` are the repaired ones
   std::string material;               ///< its name
   Appearance appearance;              ///< of it, at the first sample
+  TextureSettings textures;           ///< of it
   Placement file_to_space;            ///< from mesh->positions to the coordinates of ExportSample::positions
   /// From the coordinates of ExportSample::positions to the export's world: the body's placement in object space, the
   /// identity in world space.

@@ -10,6 +10,7 @@
 #include "core/base/check.h"
 #include "core/base/error.h"
 #include "tool/export/float_values.h"
+#include "tool/export/gltf_look.h"
 #include "tool/export/scratch_file.h"
 #include "tool/export/seam_split.h"
 
@@ -47,6 +48,14 @@ class Buffer {
                           {"type", type}});
     bytes_.write(bytes_of(values));
     return static_cast<int>(accessors_.size()) - 1;
+  }
+
+  /// Adds a buffer view that no accessor reads; returns its index.
+  int add_picture(std::vector<std::uint8_t> bytes) {
+    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}});
+    bytes.resize((bytes.size() + 3) / 4 * 4);
+    bytes_.write(bytes_of(bytes));
+    return static_cast<int>(views_.size()) - 1;
   }
 
   /// The last accessor's smallest and largest values.
@@ -96,8 +105,14 @@ float difference(float rest, float position) {
 class GlbFile : public ExportWriter {
  public:
   explicit GlbFile(ExportTarget target)
-      : target_(std::move(target)), split_(split_at_seams(*body().mesh)), buffer_(target_.folder) {
-    require_times();
+      : target_(std::move(target)),
+        split_(split_at_seams(*body().mesh)),
+        look_(body(), !split_.textures.empty()),
+        buffer_(target_.folder) {
+    require_float_times("glb", target_.times, target_.settings.fps);
+    require_positive_times();
+    require_texture_coordinates(fmt::format("{}.{}.glb", target_.shot, body().name), *body().mesh,
+                                std::numeric_limits<float>::max());
     require_size();
     write_rest();
   }
@@ -119,7 +134,7 @@ class GlbFile : public ExportWriter {
     header["scenes"] = Json::array({Json{{"name", target_.shot}, {"nodes", Json::array({0})}}});
     header["nodes"] = Json::array({node()});
     header["meshes"] = Json::array({mesh()});
-    header["materials"] = Json::array({material()});
+    look_.describe(picture_views_, header);
     header["animations"] = Json::array({std::move(animation)});
     buffer_.describe(header);
     write_chunks(header.dump(-1, ' ', false, Json::error_handler_t::replace));  // names of files may be of any bytes
@@ -129,15 +144,7 @@ class GlbFile : public ExportWriter {
   const ExportBody& body() const { return target_.bodies[0]; }
   std::size_t vertices() const { return split_.sources.size(); }
 
-  float seconds(int sample) const { return static_cast<float>(target_.times.frame(sample) / target_.settings.fps); }
-
-  void require_times() const {
-    for (int sample = 1; sample < target_.times.count; ++sample)
-      if (!(seconds(sample) > seconds(sample - 1)))
-        throw input_error(
-            fmt::format("glb: frames {} and {} are both at {} s, as its times are float32.\n"
-                        "  Accepted: samples that differ there. Use fewer --subframes, a smaller --fps, or usda.",
-                        target_.times.frame(sample - 1), target_.times.frame(sample), seconds(sample)));
+  void require_positive_times() const {
     if (target_.times.first >= 0) return;
     throw input_error(
         fmt::format("glb: frame {} lies before 0, where glTF has no times.\n"
@@ -149,8 +156,10 @@ class GlbFile : public ExportWriter {
   void require_size() const {
     const double samples = target_.times.count, corners = 12.0 * static_cast<double>(split_.triangles.size());
     const double vertex_bytes = 12.0 * (target_.settings.normals ? 2 : 1) * static_cast<double>(vertices());
-    const double bytes = corners + 8.0 * static_cast<double>(split_.textures.size()) + vertex_bytes * (samples + 1) +
-                         4 * samples * (samples + 1) + 1024 * samples + 65536;
+    double pictures = 0;
+    for (const GltfLook::Picture& picture : look_.pictures()) pictures += static_cast<double>(picture.bytes.size());
+    const double bytes = pictures + corners + 8.0 * static_cast<double>(split_.textures.size()) +
+                         vertex_bytes * (samples + 1) + 4 * samples * (samples + 1) + 1024 * samples + 65536;
     if (bytes <= std::numeric_limits<std::uint32_t>::max()) return;
     throw input_error(
         fmt::format("glb: {} samples of {} vertices need {:.1f} GiB, and a GLB file ends at 4 GiB.\n"
@@ -174,6 +183,8 @@ class GlbFile : public ExportWriter {
       rest_normals_ = to_vertices("the mesh at rest", vertex_normals(*body().mesh, rest));
       attributes_["NORMAL"] = buffer_.add(rest_normals_, "VEC3", 3, kVertexData);
     }
+    for (const GltfLook::Picture& picture : look_.pictures())
+      picture_views_.push_back(buffer_.add_picture(picture.bytes));
     if (split_.textures.empty()) return;
     std::vector<float> textures;
     for (const Vec2f& at : split_.textures) textures.insert(textures.end(), {at.x(), 1 - at.y()});
@@ -199,7 +210,7 @@ class GlbFile : public ExportWriter {
   Json write_animation() {
     const auto samples = static_cast<std::size_t>(target_.times.count);
     std::vector<float> times;
-    for (int k = 0; k < target_.times.count; ++k) times.push_back(seconds(k));
+    for (int k = 0; k < target_.times.count; ++k) times.push_back(seconds_of(target_.times, k, target_.settings.fps));
     const int input = buffer_.add(times, "SCALAR", 1, 0);
     buffer_.add_bounds(times, 1);
     const int output = buffer_.add_rows(samples * samples, [&](ScratchFile& bytes) {
@@ -239,16 +250,6 @@ class GlbFile : public ExportWriter {
             {"extras", {{"targetNames", std::move(target_names_)}}}};
   }
 
-  Json material() const {
-    const Appearance& look = body().appearance;
-    return {{"name", body().material},
-            {"pbrMetallicRoughness",
-             {{"baseColorFactor", {look.base_color.x(), look.base_color.y(), look.base_color.z(), 1}},
-              {"metallicFactor", look.metallic},
-              {"roughnessFactor", look.roughness}}},
-            {"doubleSided", true}};
-  }
-
   void write_chunks(std::string header) {
     header.append((4 - header.size() % 4) % 4, ' ');
     const std::uint64_t binary = buffer_.bytes().size();
@@ -264,8 +265,10 @@ class GlbFile : public ExportWriter {
 
   ExportTarget target_;
   SeamSplit split_;
+  GltfLook look_;
   Buffer buffer_;
   int indices_ = 0;
+  std::vector<int> picture_views_;
   std::vector<float> rest_positions_, rest_normals_;
   std::vector<float> deltas_;  ///< of one target
   Json attributes_, targets_ = Json::array(), target_names_ = Json::array();
@@ -276,8 +279,9 @@ class GlbFile : public ExportWriter {
 ExportFormat glb_format() {
   ExportFormat format;
   format.name = "glb";
-  format.about = "binary glTF, a file a body: samples as morph targets with their animation; material";
+  format.about = "binary glTF, a file a body: samples as morph targets with their animation; material, textures";
   format.file_per = FilePer::Body;
+  format.version = 2;
   format.has_normals = true;
   format.has_seconds = true;
   format.has_transform = true;

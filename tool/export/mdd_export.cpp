@@ -15,10 +15,11 @@ static_assert(std::endian::native == std::endian::little, "values are turned rou
 class MddFile : public ExportWriter {
  public:
   explicit MddFile(ExportTarget target) : target_(std::move(target)) {
+    require_float_times("mdd", target_.times, target_.settings.fps);
     put(static_cast<std::uint32_t>(target_.times.count));
     put(static_cast<std::uint32_t>(target_.bodies[0].mesh->positions.size()));
     for (int sample = 0; sample < target_.times.count; ++sample)
-      put(std::bit_cast<std::uint32_t>(static_cast<float>(target_.times.frame(sample) / target_.settings.fps)));
+      put(std::bit_cast<std::uint32_t>(seconds_of(target_.times, sample, target_.settings.fps)));
     flush();
   }
 

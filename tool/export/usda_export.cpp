@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "tool/export/body_samples.h"
 #include "tool/export/float_values.h"
 #include "tool/export/scratch_file.h"
+#include "tool/export/usda_look.h"
 #include "tool/export/usda_text.h"
 
 namespace softreel {
@@ -38,8 +40,11 @@ std::string extent_text(const std::vector<float>& points) {
 class UsdaFile : public ExportWriter {
  public:
   explicit UsdaFile(ExportTarget target) : target_(std::move(target)) {
-    for (std::size_t b = 0; b < target_.bodies.size(); ++b)
+    for (const ExportBody& body : target_.bodies) {
+      require_texture_coordinates(fmt::format("{}.usda, body {}", target_.shot, body.name), *body.mesh,
+                                  std::numeric_limits<float>::max());
       texts_.push_back(std::make_unique<BodyTexts>(target_.folder));
+    }
   }
 
   void append(const ExportSample& sample) override {
@@ -63,7 +68,7 @@ class UsdaFile : public ExportWriter {
       CHECK(texts_[b]->samples == target_.times.count);
       const std::string look = looks.unique(target_.bodies[b].name);
       write_body(target_.bodies[b], *texts_[b], names.unique(target_.bodies[b].name), look);
-      materials += material_text(target_.bodies[b], look);
+      materials += usda_look(target_.bodies[b], look, fmt::format("/{}/Looks", root_name()), target_.folder);
     }
     write_camera();
     write("\n    def Scope \"Looks\"\n    {{\n{}    }}\n}}\n", materials);
@@ -120,21 +125,6 @@ class UsdaFile : public ExportWriter {
     const std::string groups = usda_groups(*body.mesh, "        ");
     target_.sink({reinterpret_cast<const std::uint8_t*>(groups.data()), groups.size()});
     write("    }}\n\n");
-  }
-
-  std::string material_text(const ExportBody& body, const std::string& name) const {
-    const Appearance& a = body.appearance;
-    return fmt::format(
-        "        def Material \"{0}\"\n        {{\n"
-        "            token outputs:surface.connect = </{1}/Looks/{0}/surface.outputs:surface>\n"
-        "            custom string softreel:name = {2}\n\n"
-        "            def Shader \"surface\"\n            {{\n"
-        "                uniform token info:id = \"UsdPreviewSurface\"\n"
-        "                color3f inputs:diffuseColor = ({3}, {4}, {5})\n                float inputs:metallic = {6}\n"
-        "                float inputs:roughness = {7}\n                token outputs:surface\n            }}\n        "
-        "}}\n",
-        name, root_name(), usda_quoted(body.material), a.base_color.x(), a.base_color.y(), a.base_color.z(), a.metallic,
-        a.roughness);
   }
 
   /// An attribute of the camera: a value where it stays, else one at each sample. `text` makes that of one.
@@ -198,8 +188,10 @@ class UsdaFile : public ExportWriter {
 ExportFormat usda_format() {
   ExportFormat format;
   format.name = "usda";
-  format.about = "USD text, a file of the whole shot: meshes with time samples, materials, camera; float32";
+  format.about =
+      "USD text, a file of the whole shot: meshes with time samples, materials with textures, camera; float32";
   format.file_per = FilePer::Shot;
+  format.version = 2;
   format.has_normals = true;
   format.has_seconds = true;
   format.has_transform = true;

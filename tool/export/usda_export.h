@@ -5,7 +5,8 @@
 
 namespace softreel {
 
-/// One file of the whole shot: /SHOT/BODY (Mesh), /SHOT/camera, /SHOT/Looks/BODY (UsdPreviewSurface). Time codes are
+/// One file of the whole shot: /SHOT/BODY (Mesh), /SHOT/camera, /SHOT/Looks/BODY (UsdPreviewSurface; pictures
+/// stay where they are, by paths relative to the file). Time codes are
 /// frames. Points are the nearest float32 of each coordinate, in the file's order with its polygons; texture
 /// coordinates per corner (primvars:st), groups as GeomSubsets. In object space a mesh carries its placement as
 /// xformOp:transform. Lengths of the camera are in tenths of a unit, as USD wants them. Names that USD does not allow

@@ -60,6 +60,54 @@ std::string shown_name(const FarmShot& shot, const FarmJob& job) {
   return name;
 }
 
+/// Whether sbatch reads a word, up to a =, as --dependency: also by a beginning that is of no other option.
+bool is_dependency(const std::string& name) {
+  return name.size() >= 5 && std::string("--dependency").starts_with(name);
+}
+
+/// The further arguments of a user, and apart from them what the user's jobs are to wait for.
+struct UserArguments {
+  std::vector<std::string> dependencies, others;
+};
+
+UserArguments sort_out(const std::vector<std::string>& given) {
+  UserArguments sorted;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const std::string name = given[i].substr(0, given[i].find('='));
+    const bool is_last = i + 1 == given.size();
+    if (is_dependency(name) && name != given[i])
+      sorted.dependencies.push_back(given[i].substr(name.size() + 1));
+    else if ((is_dependency(given[i]) || given[i] == "-d") && !is_last)
+      sorted.dependencies.push_back(given[++i]);
+    else if (given[i].starts_with("-d") && given[i] != "-d")
+      sorted.dependencies.push_back(given[i].substr(2));
+    else
+      sorted.others.push_back(given[i]);
+  }
+  for (const std::string& dependency : sorted.dependencies)
+    if (dependency.find('?') != std::string::npos)
+      throw input_error(
+          fmt::format("--sbatch: the dependency \"{}\" asks for any of its conditions, and the jobs of a shot wait for "
+                      "all of theirs.\n  Accepted: conditions with commas between them, which must all hold.",
+                      dependency));
+  return sorted;
+}
+
+/// What a job waits for: the jobs of its shot, and what the user says. sbatch takes the last --dependency only.
+std::vector<std::string> dependency_arguments(const std::vector<std::string>& after,
+                                              const std::vector<std::string>& users) {
+  if (after.empty() && users.empty()) return {};
+  std::string text;
+  if (!after.empty()) {
+    text = "afterok";
+    for (const std::string& one : after) text += ":" + one;
+  }
+  for (const std::string& one : users) text += (text.empty() ? "" : ",") + one;
+  std::vector<std::string> arguments{"--dependency=" + text};
+  if (!after.empty()) arguments.emplace_back("--kill-on-invalid-dep=yes");  // else it would wait for ever for a failed
+  return arguments;
+}
+
 }  // namespace
 
 std::string slurm_task(const FarmJob& job, const std::string& job_number, std::size_t task) {
@@ -87,16 +135,12 @@ std::vector<std::string> sbatch_command(const FarmShot& shot, const FarmJob& job
                                    fmt::format("--cpus-per-task={}", needs.cpus), fmt::format("--mem={}M", mebibytes),
                                    fmt::format("--time={}", minutes)};
   if (is_array(job)) command.push_back(fmt::format("--array=0-{}", job.tasks.size() - 1));
-  if (!after.empty()) {
-    std::string dependency = "--dependency=afterok";
-    for (const std::string& one : after) dependency += ":" + one;
-    command.push_back(dependency);
-    command.emplace_back("--kill-on-invalid-dep=yes");  // else it would wait for ever for what failed
-  }
+  const UserArguments users = sort_out(settings.sbatch);
+  for (std::string& one : dependency_arguments(after, users.dependencies)) command.push_back(std::move(one));
   if (!settings.partition.empty()) command.push_back("--partition=" + settings.partition);
   if (!settings.account.empty()) command.push_back("--account=" + settings.account);
   if (!settings.constraint.empty()) command.push_back("--constraint=" + settings.constraint);
-  command.insert(command.end(), settings.sbatch.begin(), settings.sbatch.end());
+  command.insert(command.end(), users.others.begin(), users.others.end());
   command.push_back(script_path);
   return command;
 }

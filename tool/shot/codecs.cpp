@@ -39,15 +39,14 @@ double invert_exactly(const Forward& forward, T wanted, double guess) {
   return guess;
 }
 
-Range single_range(Range range) {
-  constexpr double kLargest = std::numeric_limits<float>::max();
-  return {std::max(range.min, -kLargest), std::min(range.max, kLargest), range.above_min};
-}
-
 }  // namespace
 
+bool is_end(double x) {
+  return std::abs(x) < kLargestSingle;
+}
+
 std::string to_text(const Range& range) {
-  const bool has_min = std::isfinite(range.min), has_max = std::isfinite(range.max);
+  const bool has_min = is_end(range.min), has_max = is_end(range.max);
   const auto end = [](double x) { return fmt::format("{}", x); };
   if (!has_min && !has_max) return "any finite number";
   if (!has_max) return range.above_min ? "above " + end(range.min) : end(range.min) + " or more";
@@ -66,8 +65,12 @@ double parse_number(const Place& place, const TomlValue& value, const Range& ran
     throw value_error(place, value, "it is " + kind_name(value) + ", not a number");
   }
   if (!std::isfinite(number)) throw value_error(place, value, "it is not finite");
-  if (!range.contains(number)) throw value_error(place, value, "it is out of range");
-  return number;
+  if (range.contains(number)) return number;
+  // What is accepted names no such end.
+  const bool is_beyond_single = std::abs(number) > kLargestSingle;
+  throw value_error(place, value,
+                    is_beyond_single ? fmt::format("it is out of range: numbers end at {:.2g} here", kLargestSingle)
+                                     : "it is out of range");
 }
 
 std::int64_t parse_whole(const Place& place, const TomlValue& value, std::int64_t min, std::int64_t max) {
@@ -119,7 +122,7 @@ Codec<float> single(const Range& range) {
   Codec<float> codec;
   codec.type = "number";
   codec.accepted = to_text(range);
-  codec.parse = [held = single_range(range)](const Place& place, const TomlValue& value) {
+  codec.parse = [held = in_single(range)](const Place& place, const TomlValue& value) {
     return static_cast<float>(parse_number(place, value, held));
   };
   codec.print = [](const float& value) { return print_number(value); };
@@ -284,7 +287,7 @@ double to_degrees(double radians) {
 Codec<float> degrees_single(const Range& range) {
   Codec<float> codec = single(range);
   const auto forward = [](double degrees) { return static_cast<float>(to_radians(degrees)); };
-  codec.parse = [forward, held = single_range(range)](const Place& place, const TomlValue& value) {
+  codec.parse = [forward, held = in_single(range)](const Place& place, const TomlValue& value) {
     return forward(parse_number(place, value, held));
   };
   codec.print = [forward](const float& radians) {

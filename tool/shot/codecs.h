@@ -26,6 +26,14 @@ struct Range {
   bool contains(double x) const { return (above_min ? x > min : x >= min) && x <= max; }
 };
 
+inline constexpr double kLargestSingle = std::numeric_limits<float>::max();
+/// The same for a number that is computed on, or kept, in single precision: what that cannot hold is refused.
+constexpr Range in_single(Range range) {
+  if (range.min < -kLargestSingle) range.min = -kLargestSingle;
+  if (range.max > kLargestSingle) range.max = kLargestSingle;
+  return range;
+}
+
 inline constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 inline constexpr Range kAnyNumber{};
 inline constexpr Range kPositive{0, kNoEnd, true};
@@ -34,6 +42,8 @@ inline constexpr Range kShare{0, 1, false};
 /// How a colour is spelt.
 inline constexpr const char* kColorType = "[r, g, b]";
 
+/// Whether an end of a range says something of the field: infinity and the largest single do not.
+bool is_end(double x);
 /// "above 0", "0 to 1", "any".
 std::string to_text(const Range& range);
 
@@ -48,7 +58,7 @@ TomlValue print_number(double value);
 TomlValue print_number(float value);
 
 Codec<double> number(const Range& range);
-/// Kept in single precision; what it cannot hold is refused.
+/// Kept in single precision.
 Codec<float> single(const Range& range);
 /// The same values in a wider type, for tracks, which blend in double.
 Codec<double> widened(const Codec<float>& codec);
@@ -116,14 +126,10 @@ template <typename V>
 Codec<V> vector_of(const Range& range, const std::string& type = "[x, y, z]") {
   using Scalar = typename V::Scalar;
   constexpr auto kSize = static_cast<std::size_t>(V::SizeAtCompileTime);
-  Range held = range;
-  if constexpr (std::is_same_v<Scalar, float>) {
-    held.min = std::max(held.min, -static_cast<double>(std::numeric_limits<float>::max()));
-    held.max = std::min(held.max, static_cast<double>(std::numeric_limits<float>::max()));
-  }
+  const Range held = std::is_same_v<Scalar, float> ? in_single(range) : range;
   Codec<V> codec;
   codec.type = type;
-  const bool any = !std::isfinite(range.min) && !std::isfinite(range.max);
+  const bool any = !is_end(range.min) && !is_end(range.max);
   codec.accepted = std::to_string(kSize) + (any ? " finite numbers" : " numbers, each " + to_text(range));
   codec.parse = [held](const Place& place, const TomlValue& value) {
     const std::vector<double> numbers = parse_numbers(place, value, kSize, held);

@@ -1,6 +1,7 @@
 // The tables of bodies: placement, size of the tetrahedra, regions, pins, pulls, materials.
 #include <fmt/format.h>
 
+#include "core/tetmesh/tet_mesh_file.h"
 #include "render/pathtrace/sheen.h"
 #include "tool/shot/codecs.h"
 #include "tool/shot/keyed_appearance.h"
@@ -171,7 +172,9 @@ void check_body(const Place& place, const TomlValue& value, BodySettings& body) 
     throw value_error({place.path, &name, place.problems}, value, "files are named after the body", "Rename it.");
   }
   check_alternatives(place, value, "body.*");
-  const bool sized = body.edge > 0 || body.tets > 0 || body.error.value > 0 || !body.tetrahedra.empty();
+  // Tetrahedra as mesh are as many as they are: that a size was given beside them can then be said.
+  const bool sized =
+      body.edge > 0 || body.tets > 0 || body.error.value > 0 || !body.tetrahedra.empty() || is_tet_mesh_file(body.mesh);
   if (!sized) body.tets = kDefaultTets;
   body.mesh_origin = value.find("mesh")->origin;
 }

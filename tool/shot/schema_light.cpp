@@ -71,17 +71,19 @@ void add_light_fields(Table<LightSettings>& t) {
   t.require("type", &L::kind, choice<LightKind>(names), "",
             "\"area\", \"disk\": a rectangle or ellipse that shines from one side; \"sphere\": a ball; \"sun\": a "
             "distant disk.")
-      .add("center", &L::center, keyed(vector_of<Vec3>(kAnyNumber), "m"), "m", "Lamps: its middle.")
-      .add("aim", &L::aim, keyed(vector_of<Vec3>(kAnyNumber), "m"), "m", "area, disk: the point it faces.")
-      .add("size", &L::size, vector_of<Vec2>(kPositive, "[width, height]"), "m", "area, disk: its edges or diameters.")
-      .add("radius", &L::radius, number(kPositive), "m", "sphere: half its diameter.")
-      .add("color", &L::color, keyed(vector_of<Vec3>(kNotNegative, kColorType), "linear"), "linear",
+      .add("center", &L::center, keyed(vector_of<Vec3>(in_single(kAnyNumber)), "m"), "m", "Lamps: its middle.")
+      .add("aim", &L::aim, keyed(vector_of<Vec3>(in_single(kAnyNumber)), "m"), "m", "area, disk: the point it faces.")
+      .add("size", &L::size, vector_of<Vec2>(in_single(kPositive), "[width, height]"), "m",
+           "area, disk: its edges or diameters.")
+      .add("radius", &L::radius, number(in_single(kPositive)), "m", "sphere: half its diameter.")
+      .add("color", &L::color, keyed(vector_of<Vec3>(in_single(kNotNegative), kColorType), "linear"), "linear",
            "Colour of its light.")
-      .add("power", &L::power, keyed(number(kNotNegative), "W"), "W",
+      .add("power", &L::power, keyed(number(in_single(kNotNegative)), "W"), "W",
            "Of the whole lamp; its radiance is power / (4 area), of a sphere power / (pi surface).")
       .add("visible", &L::visible, toggle(), "", "Lamps: whether the camera sees the lamp itself.")
-      .add("direction", &L::direction, keyed(vector_of<Vec3>(kAnyNumber), ""), "", "sun: the way its light travels.")
-      .add("irradiance", &L::irradiance, keyed(number(kNotNegative), "W/m^2"), "W/m^2",
+      .add("direction", &L::direction, keyed(vector_of<Vec3>(in_single(kAnyNumber)), ""), "",
+           "sun: the way its light travels.")
+      .add("irradiance", &L::irradiance, keyed(number(in_single(kNotNegative)), "W/m^2"), "W/m^2",
            "sun: on a surface that faces it.")
       .add("angle_deg", &L::angle_deg, number({0, 90, false}), "degrees",
            "sun: diameter; small ones cast hard shadows.");
@@ -119,7 +121,7 @@ const Table<SkySettings>& sky_table() {
     t.add("turbidity", &S::turbidity, keyed(number({1.7, 10, false}), ""), "", "Haze: 2 very clear, 3 clear, 6 hazy.")
         .add("elevation_deg", &S::elevation_deg, keyed(number({0, 90, false}), "degrees"), "degrees",
              "Of the sun above the horizon.")
-        .add("azimuth_deg", &S::azimuth_deg, keyed(number(kAnyNumber), "degrees"), "degrees",
+        .add("azimuth_deg", &S::azimuth_deg, keyed(number(in_single(kAnyNumber)), "degrees"), "degrees",
              "Of the sun about the vertical; 0: in front, 90: on the right.")
         .add("ground_albedo", &S::ground_albedo, number(kShare), "", "Share that what is below the horizon sends back.")
         .add("sun", &S::sun, toggle(), "", "Whether the sun itself shines.")

@@ -74,21 +74,23 @@ const Table<CameraSettings>& camera_table() {
     t.add("mode", &C::mode, choice<CameraMode>({{"frame", CameraMode::Frame}, {"place", CameraMode::Place}}), "",
           "\"frame\" shows all bodies as they rest; \"place\" takes position and target.",
           "\"place\" where position and target are given, else \"frame\"")
-        .add("azimuth_deg", &C::azimuth_deg, number(kAnyNumber), "degrees",
+        .add("azimuth_deg", &C::azimuth_deg, number(in_single(kAnyNumber)), "degrees",
              "frame: turns the camera about the vertical; 0 is the front.")
         .add("elevation_deg", &C::elevation_deg, number({-90, 90, false}), "degrees", "frame: lifts the camera.")
-        .add("margin", &C::margin, number(kPositive), "", "frame: size of the picture over that of the bodies.")
-        .add("shift", &C::shift, vector_of<Vec3>(kAnyNumber), "heights of the bodies",
+        .add("margin", &C::margin, number(in_single(kPositive)), "",
+             "frame: size of the picture over that of the bodies.")
+        .add("shift", &C::shift, vector_of<Vec3>(in_single(kAnyNumber)), "heights of the bodies",
              "frame: moves what is looked at.")
-        .add("position", &C::position, keyed(vector_of<Vec3>(kAnyNumber), "m"), "m", "place: where the camera stands.",
+        .add("position", &C::position, keyed(vector_of<Vec3>(in_single(kAnyNumber)), "m"), "m",
+             "place: where the camera stands.", "none; must be given with mode = \"place\"")
+        .add("target", &C::target, keyed(vector_of<Vec3>(in_single(kAnyNumber)), "m"), "m", "place: what it looks at.",
              "none; must be given with mode = \"place\"")
-        .add("target", &C::target, keyed(vector_of<Vec3>(kAnyNumber), "m"), "m", "place: what it looks at.",
-             "none; must be given with mode = \"place\"")
-        .add("focal_length_mm", &C::focal_length_mm, keyed(number(kPositive), "mm"), "mm",
+        .add("focal_length_mm", &C::focal_length_mm, keyed(number(in_single(kPositive)), "mm"), "mm",
              "The lens: 24 is wide, 50 normal, 100 narrow.", "50")
-        .add("sensor_width_mm", &C::sensor_width_mm, number(kPositive), "mm", "Width of the sensor.")
-        .add("f_number", &C::f_number, number(kNotNegative), "", "Aperture, such as 2.8; 0: everything is sharp.")
-        .add("focus_distance", &C::focus_distance, keyed(number(kPositive), "m"), "m", "Where it is sharp.",
+        .add("sensor_width_mm", &C::sensor_width_mm, number(in_single(kPositive)), "mm", "Width of the sensor.")
+        .add("f_number", &C::f_number, number(in_single(kNotNegative)), "",
+             "Aperture, such as 2.8; 0: everything is sharp.")
+        .add("focus_distance", &C::focus_distance, keyed(number(in_single(kPositive)), "m"), "m", "Where it is sharp.",
              "at the target");
     t.check = check_camera;
     return t;
@@ -112,8 +114,8 @@ const Table<Shot>& environment_table() {
           "A latitude-longitude picture (EXR, HDR, PNG, JPEG) instead of the gradient.", "none: the gradient")
         .add("strength", &Shot::environment_strength, keyed(widened(single(kNotNegative)), ""), "",
              "Factor on gradient, picture or sky.")
-        .add("rotation_deg", &Shot::environment_rotation_deg, keyed(number(kAnyNumber), "degrees"), "degrees",
-             "Turns the picture about the vertical.")
+        .add("rotation_deg", &Shot::environment_rotation_deg, keyed(number(in_single(kAnyNumber)), "degrees"),
+             "degrees", "Turns the picture about the vertical.")
         .add_optional_table("sky", &Shot::sky, sky_table());
     t.check = note_environment_origin;
     return t;

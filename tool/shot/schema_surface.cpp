@@ -46,18 +46,19 @@ void add_texture_fields(Table<MaterialSettings>& t) {
   path("normal_texture", &S::normal, "Normal map in tangent space: numbers as stored, green upward (OpenGL, glTF).",
        "none");
   t.add(
-      "normal_strength", [](auto& m) -> auto& { return m.textures.normal_strength; }, number(kNotNegative), "",
-      "Factor on the slopes of the normal map; 0: flat.");
+      "normal_strength", [](auto& m) -> auto& { return m.textures.normal_strength; }, number(in_single(kNotNegative)),
+      "", "Factor on the slopes of the normal map; 0: flat.");
   path("bump_texture", &S::bump, "Picture of heights: numbers as stored, green channel.", "none");
   t.add(
-       "bump_height", [](auto& m) -> auto& { return m.textures.bump_height; }, number(kAnyNumber), "m",
+       "bump_height", [](auto& m) -> auto& { return m.textures.bump_height; }, number(in_single(kAnyNumber)), "m",
        "How much higher white lies than black; below 0: deeper.")
       .add(
-          "texture_scale", [](auto& m) -> auto& { return m.textures.scale; }, vector_of<Vec2>(kAnyNumber, "[u, v]"), "",
+          "texture_scale", [](auto& m) -> auto& { return m.textures.scale; },
+          vector_of<Vec2>(in_single(kAnyNumber), "[u, v]"), "",
           "How often the pictures repeat where the texture coordinates go from 0 to 1.")
       .add(
-          "texture_offset", [](auto& m) -> auto& { return m.textures.offset; }, vector_of<Vec2>(kAnyNumber, "[u, v]"),
-          "pictures", "Moves the pictures, after the scale.")
+          "texture_offset", [](auto& m) -> auto& { return m.textures.offset; },
+          vector_of<Vec2>(in_single(kAnyNumber), "[u, v]"), "pictures", "Moves the pictures, after the scale.")
       .add(
           "texture_wrap", [](auto& m) -> auto& { return m.textures.wrap; },
           choice<TextureWrap>(

@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/base/error.h"
@@ -44,6 +46,38 @@ fs::path folder_of(const std::string& path) {
   return parent.empty() ? fs::path(".") : parent;
 }
 
+/// With what the system said last.
+[[noreturn]] void fail_at(const std::string& path, const char* what) {
+  const int code = errno;
+  throw work_error(
+      fmt::format("{}: {}: {}.\n  {} Finished files are intact.", path, what, std::strerror(code), advice(code)));
+}
+
+void write_all(int descriptor, std::span<const std::uint8_t> bytes, const std::string& path) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written == 0) errno = ENOSPC;
+    if (written <= 0) fail_at(path, "cannot be written");
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+/// An open file that is closed whatever happens.
+struct OpenFile {
+  explicit OpenFile(int opened) : descriptor(opened) {}
+  ~OpenFile() {
+    if (descriptor >= 0) ::close(descriptor);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int descriptor;
+};
+
 }  // namespace
 
 bool is_temporary_name(const std::string& name) {
@@ -76,21 +110,11 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::fail(const char* what) const {
-  const int code = errno;
-  throw work_error(
-      fmt::format("{}: {}: {}.\n  {} Finished files are intact.", path_, what, std::strerror(code), advice(code)));
+  fail_at(path_, what);
 }
 
 void AtomicFile::write(std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      if (written == 0) errno = ENOSPC;
-      fail("cannot be written");
-    }
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
+  write_all(descriptor_, bytes, path_);
 }
 
 void AtomicFile::give_name() {
@@ -125,7 +149,21 @@ void write_file(const std::string& path, std::span<const std::uint8_t> bytes) {
 }
 
 void write_file(const std::string& path, const std::string& text) {
-  write_file(path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  write_file(path, bytes_of(text));
+}
+
+std::size_t append_to_file(const std::string& path, std::size_t size, const std::string& text) {
+  const int how = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | (size == 0 ? O_TRUNC : 0);
+  OpenFile file(::open(path.c_str(), how, 0666));
+  struct stat found {};
+  if (file.descriptor < 0 || ::fstat(file.descriptor, &found) != 0) fail_at(path, "cannot be opened");
+  const auto there = static_cast<std::size_t>(found.st_size);
+  const std::string added = (there == size ? "" : "~\n") + text;
+  write_all(file.descriptor, bytes_of(added), path);
+  if (::fdatasync(file.descriptor) != 0) fail_at(path, "cannot be written");
+  const int descriptor = std::exchange(file.descriptor, -1);
+  if (::close(descriptor) != 0) fail_at(path, "cannot be written");  // network file systems report a full disk here
+  return there + added.size();
 }
 
 bool link_file(const std::string& from, const std::string& to) {

@@ -1,6 +1,7 @@
 /// Files that are there completely or not at all: written without a name, flushed, and linked to their name.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -47,6 +48,12 @@ class AtomicFile {
 /// Writes a whole file atomically; folders on the way are made. Throws work_error.
 void write_file(const std::string& path, std::span<const std::uint8_t> bytes);
 void write_file(const std::string& path, const std::string& text);
+
+/// Adds a text at the end of a file, through to the disk, and returns how long the file is then. size: what is known of
+/// it; 0: it is made, in the place of one that is there. What lies beyond, a piece of a line that could not be written,
+/// is ended with "~" and a line break first, which make it a line of nothing even if only its end is missing. For one
+/// writer at a time. Throws work_error, and may leave a piece of the text.
+std::size_t append_to_file(const std::string& path, std::size_t size, const std::string& text);
 
 /// Gives the file `from` a second name `to`, in the place of a file that is there; false if the system cannot (another
 /// file system, no such file): the caller copies. Throws work_error for what would stop a copy too.

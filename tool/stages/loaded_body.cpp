@@ -61,7 +61,7 @@ void say_ignored(const BodySettings& body, const Log& log) {
       log.warn(fmt::format("{}: body.{}.{} has no effect: {} gives the tetrahedra.", to_string(body.origin), body.name,
                            field, file));
   };
-  say(body.tets > 0 && body.tets != kDefaultTets, "tets");
+  say(body.tets > 0, "tets");
   say(body.edge > 0, "edge");
   say(body.error.value > 0, "error");
   say(body.graded, "graded");

@@ -1,27 +1,33 @@
 #include "tool/stages/outputs.h"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <random>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "tool/stages/atomic_file.h"
 #include "tool/stages/byte_hasher.h"
-#include "tool/stages/file_lock.h"
 #include "tool/stages/json_text.h"
 
 namespace softreel {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kManifestFormat = 2;
-
 std::string name_of(const std::string& path) {
   return fs::path(path).filename().string();
+}
+
+/// The number that ends a text after a point: of "DIR/SHOT.0012", 12.
+std::optional<int> number_at_end(const std::string& text) {
+  const std::size_t point = text.rfind('.');
+  if (point == std::string::npos) return std::nullopt;
+  const char* const end = text.data() + text.size();
+  int number = 0;
+  const auto [stopped, code] = std::from_chars(text.data() + point + 1, end, number);
+  if (code != std::errc{} || stopped != end) return std::nullopt;
+  return number;
 }
 
 std::string settings_id_of(const SettingsSnapshot& settings) {
@@ -33,48 +39,10 @@ std::string settings_id_of(const SettingsSnapshot& settings) {
 }  // namespace
 
 Outputs::Outputs(std::string folder, std::string shot_name, const Log& log)
-    : folder_(std::move(folder)), shot_name_(std::move(shot_name)), log_(log) {
+    : folder_(std::move(folder)), shot_name_(std::move(shot_name)), log_(log), manifest_(folder_, shot_name_, log) {
   require_utf8(shot_name_, "the name of the shot");
   require_utf8(folder_, "the output folder");
-  revision_ = stored_revision();
-  contents_ = read();
-}
-
-std::string Outputs::lock_path() const {
-  return (fs::path(folder_) / fmt::format(".{}.manifest.lock", shot_name_)).string();
-}
-
-std::string Outputs::stored_revision() const {
-  std::string revision;
-  std::getline(std::ifstream(lock_path()), revision);
-  return revision;
-}
-
-std::string Outputs::manifest_path() const {
-  return (fs::path(folder_) / (shot_name_ + ".manifest.json")).string();
-}
-
-Outputs::Contents Outputs::read() const {
-  Contents contents;
-  if (!fs::exists(manifest_path())) return contents;
-  try {
-    const auto bytes = read_file(manifest_path());
-    const auto json = nlohmann::json::parse(bytes.begin(), bytes.end());
-    if (const int format = json.at("format").get<int>(); format != kManifestFormat) {
-      log_.warn(fmt::format("{}: is of format {}, this softreel reads format {}; its files are made again.",
-                            manifest_path(), format, kManifestFormat));
-      return contents;
-    }
-    for (const auto& [name, entry] : json.at("files").items())
-      contents.entries[name] = {entry.at("key").get<std::string>(), entry.at("checksum").get<std::string>(),
-                                entry.at("seconds").get<double>(), entry.at("settings").get<std::string>()};
-    contents.settings = json.at("settings").get<std::map<std::string, SettingsSnapshot>>();
-    contents.simulated = json.at("simulated").get<std::string>();
-  } catch (const std::exception& problem) {
-    contents = {};
-    log_.warn(fmt::format("{}: damaged ({}); its files are made again.", manifest_path(), problem.what()));
-  }
-  return contents;
+  manifest_.read();
 }
 
 void Outputs::set_settings(const SettingsSnapshot& settings) {
@@ -97,28 +65,28 @@ std::string Outputs::path(const std::string& extension) const {
 
 std::optional<OutputEntry> Outputs::entry(const std::string& path) const {
   const std::lock_guard lock(mutex_);
-  const auto found = contents_.entries.find(name_of(path));
-  if (found == contents_.entries.end()) return std::nullopt;
+  const auto found = manifest_.contents().files.find(name_of(path));
+  if (found == manifest_.contents().files.end()) return std::nullopt;
   return found->second;
 }
 
 std::vector<std::string> Outputs::paths() const {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> paths;
-  for (const auto& [name, entry] : contents_.entries) paths.push_back((fs::path(folder_) / name).string());
+  for (const auto& [name, entry] : manifest_.contents().files) paths.push_back((fs::path(folder_) / name).string());
   return paths;
 }
 
 std::optional<SettingsSnapshot> Outputs::settings(const std::string& id) const {
   const std::lock_guard lock(mutex_);
-  const auto found = contents_.settings.find(id);
-  if (found == contents_.settings.end()) return std::nullopt;
+  const auto found = manifest_.contents().settings.find(id);
+  if (found == manifest_.contents().settings.end()) return std::nullopt;
   return found->second;
 }
 
 std::string Outputs::simulated_settings() const {
   const std::lock_guard lock(mutex_);
-  return contents_.simulated;
+  return manifest_.contents().simulated;
 }
 
 OutputState Outputs::claimed_state(const std::string& path, const StageKey& key) const {
@@ -152,10 +120,9 @@ bool Outputs::is_done(const std::string& path, const StageKey& key) const {
 }
 
 bool Outputs::insert(const std::string& path, const OutputEntry& entry, const std::function<bool()>& give_name) {
-  return update([&](Contents& contents) {
-    if (!give_name()) return false;
-    contents.entries[name_of(path)] = entry;
-    return true;
+  return update([&](const ManifestContents&) -> std::optional<ManifestChange> {
+    if (!give_name()) return std::nullopt;
+    return ManifestChange{{{name_of(path), entry}}, {}, {}};
   });
 }
 
@@ -183,16 +150,18 @@ int Outputs::remove_if(const std::vector<std::string>& paths,
                        const std::function<bool(const std::string& path)>& is_outdated) {
   if (std::none_of(paths.begin(), paths.end(), is_outdated)) return 0;  // as a rule: the manifest stays as it is
   int removed = 0;
-  update([&](Contents& contents) {
+  update([&](const ManifestContents&) -> std::optional<ManifestChange> {
+    ManifestChange change;
     for (const std::string& path : paths) {
       if (!is_outdated(path)) continue;
       std::error_code failed;
       fs::remove(path, failed);
       if (failed) throw work_error(fmt::format("{}: cannot be removed: {}.", path, failed.message()));
-      contents.entries.erase(name_of(path));
+      change.files[name_of(path)] = std::nullopt;
       ++removed;
     }
-    return removed > 0;
+    if (removed == 0) return std::nullopt;
+    return change;
   });
   return removed;
 }
@@ -206,54 +175,41 @@ int Outputs::remove_outdated(const std::map<std::string, StageKey>& keys) {
   });
 }
 
+int Outputs::remove_pictures_outside(int first, int last) {
+  std::vector<std::string> outside;
+  for (const std::string& path : paths())
+    for (const char* extension : {"png", "exr"}) {
+      const std::optional<int> frame = number_at_end(fs::path(path).replace_extension().string());
+      // By the whole name too: other files may have a number at this place.
+      if (frame && (*frame < first || *frame > last) && path == frame_path(*frame, extension)) outside.push_back(path);
+    }
+  return remove_if(outside, [&](const std::string& path) { return entry(path).has_value(); });
+}
+
 void Outputs::read_again() {
   const std::lock_guard lock(mutex_);
-  contents_ = read();
-  revision_ = "";  // of which it is, is not known: the next change reads it under the lock
+  manifest_.read();
+}
+
+void Outputs::fold() {
+  const std::lock_guard lock(mutex_);
+  manifest_.fold();
 }
 
 void Outputs::note_simulation() {
   if (simulated_settings() == settings_id_) return;
-  update([&](Contents& contents) {
-    contents.simulated = settings_id_;
-    return true;
-  });
+  update([&](const ManifestContents&) { return ManifestChange{{}, {}, settings_id_}; });
 }
 
-bool Outputs::update(const std::function<bool(Contents&)>& change) {
+bool Outputs::update(const Manifest::Change& change) {
   const std::lock_guard in_process(mutex_);
   make_folder(folder_);
-  // The lock file holds a random text that each writer replaces: whoever finds another one reads the manifest again.
-  const FileLock lock = FileLock::take(lock_path());
-  if (revision_.empty() || stored_revision() != revision_) contents_ = read();
-  if (!change(contents_)) return false;
-  if (!settings_id_.empty()) contents_.settings[settings_id_] = settings_;
-  std::set<std::string> used{contents_.simulated, settings_id_};
-  for (const auto& [name, entry] : contents_.entries) used.insert(entry.settings);
-  std::erase_if(contents_.settings, [&](const auto& item) { return used.count(item.first) == 0; });
-  // Whoever reads now, or after a kill between the two, sees a revision that nobody's contents are of.
-  store_revision("");
-  write_manifest();
-  revision_ = fmt::format("{:08x}{:08x}", std::random_device{}(), std::random_device{}());
-  store_revision(revision_);
-  return true;
-}
-
-void Outputs::store_revision(const std::string& revision) const {
-  std::ofstream(lock_path(), std::ios::trunc) << revision << "\n";  // if that fails, the manifest is read once more
-}
-
-void Outputs::write_manifest() const {
-  nlohmann::json files = nlohmann::json::object();
-  for (const auto& [name, entry] : contents_.entries)
-    files[name] = {
-        {"key", entry.key}, {"checksum", entry.checksum}, {"seconds", entry.seconds}, {"settings", entry.settings}};
-  const nlohmann::json manifest = {{"format", kManifestFormat},
-                                   {"shot", shot_name_},
-                                   {"files", files},
-                                   {"settings", contents_.settings},
-                                   {"simulated", contents_.simulated}};
-  write_file(manifest_path(), manifest.dump(1) + "\n");
+  return manifest_.update([&](const ManifestContents& contents) {
+    std::optional<ManifestChange> made = change(contents);
+    const bool is_new = !settings_id_.empty() && !contents.settings.contains(settings_id_);
+    if (made && is_new) made->settings[settings_id_] = settings_;
+    return made;
+  });
 }
 
 }  // namespace softreel

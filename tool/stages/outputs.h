@@ -1,4 +1,4 @@
-/// The files a run leaves in its output folder, and SHOT.manifest.json, which knows their keys and checksums.
+/// The files a run leaves in its output folder, and the manifest, which knows their keys and checksums.
 #pragma once
 
 #include <cstdint>
@@ -13,27 +13,17 @@
 
 #include "core/base/log.h"
 #include "tool/stages/key.h"
+#include "tool/stages/manifest.h"
 
 namespace softreel {
 
 class AtomicFile;
 
-/// What the manifest says of one file.
-struct OutputEntry {
-  StageKey key;  ///< of everything that made it
-  std::string checksum;
-  double seconds = 0;    ///< what making it took
-  std::string settings;  ///< id of the settings it was made with, for saying why it is stale
-};
-
-/// The settings of a shot as one text per field, with the checksums of the files it reads.
-using SettingsSnapshot = std::map<std::string, std::string>;
-
 enum class OutputState { Missing, Unknown, Stale, Damaged, Done };
 
 /// One output folder of one shot. A file counts as done only if the manifest has its key and its bytes have the
-/// manifest's checksum. The manifest is written with each file, merged with what other processes wrote meanwhile; while
-/// a file gets its name and its entry, no other process changes or removes either. Thread-safe.
+/// manifest's checksum. The entry is written with each file, beside what other processes wrote meanwhile; while a file
+/// gets its name and its entry, no other process changes or removes either. Thread-safe.
 class Outputs {
  public:
   /// Reads the manifest if there is one; a damaged one is said, and all files count as unknown. Throws input_error for
@@ -61,12 +51,12 @@ class Outputs {
   std::vector<std::string> paths() const;
   std::optional<SettingsSnapshot> settings(const std::string& id) const;
 
-  /// Writes the file and the manifest. Throws work_error.
+  /// Writes the file and its entry. Throws work_error.
   void write(const std::string& path, const StageKey& key, std::span<const std::uint8_t> bytes, double seconds);
-  /// Gives a stored file this name too (a copy where links do not reach), and writes the manifest.
+  /// Gives a stored file this name too (a copy where links do not reach), and writes its entry.
   void link(const std::string& path, const StageKey& key, const std::string& stored_path,
             std::span<const std::uint8_t> bytes, double seconds);
-  /// Commits a file that was written elsewhere, and writes the manifest. checksum: of its bytes.
+  /// Commits a file that was written elsewhere, and writes its entry. checksum: of its bytes.
   void commit(AtomicFile& file, const StageKey& key, const StageKey& checksum, double seconds);
   /// Removes the files, and their entries, of which `is_outdated` says so: by what was read before and by what the
   /// manifest says now, whatever other processes make meanwhile. It may ask this object, not change it. Returns how
@@ -77,39 +67,33 @@ class Outputs {
   /// Returns how many.
   int remove_outdated(const std::map<std::string, StageKey>& keys);
 
+  /// Removes the known pictures "DIR/SHOT.####.png" and ".exr" whose frames are not from `first` to `last`: of a shot
+  /// that was longer, or began elsewhere. Returns how many.
+  int remove_pictures_outside(int first, int last);
+
   /// Takes what other processes have entered in the manifest.
   void read_again();
+  /// Writes the manifest whole, with what was entered beside it until now. Throws work_error.
+  void fold();
 
   /// Last simulation of the shot in this folder: the id of its settings, empty if there was none.
   std::string simulated_settings() const;
   void note_simulation();
 
  private:
-  struct Contents {
-    std::map<std::string, OutputEntry> entries;  ///< by file name
-    std::map<std::string, SettingsSnapshot> settings;
-    std::string simulated;
-  };
   static OutputState claimed_state(const std::string& path, const StageKey& key,
                                    const std::optional<OutputEntry>& known);
-  /// change: false if it changed nothing after all; that is returned.
-  bool update(const std::function<bool(Contents&)>& change);
-  Contents read() const;
-  std::string lock_path() const;
-  std::string stored_revision() const;
-  void store_revision(const std::string& revision) const;
-  void write_manifest() const;
-  std::string manifest_path() const;
+  /// Of what is changed under the lock. change: nothing if it changed nothing after all.
+  bool update(const Manifest::Change& change);
   /// give_name: false if it could not, and nothing is entered; that is returned.
   bool insert(const std::string& path, const OutputEntry& entry, const std::function<bool()>& give_name);
 
   std::string folder_, shot_name_;
   const Log& log_;
   mutable std::recursive_mutex mutex_;  ///< of what follows; recursive: a change asks for what is there
-  Contents contents_;
+  Manifest manifest_;
   SettingsSnapshot settings_;
   std::string settings_id_;
-  std::string revision_;  ///< of the manifest that contents_ holds
 };
 
 }  // namespace softreel

@@ -30,6 +30,7 @@ StageKey PictureStage::file_key(int frame, const std::string& extension, const S
   KeyHasher key(extension + " 2");
   key.add(picture);
   if (extension == "png") key.add(shot_.output.view).add(shot_.output.exposure);
+  if (extension == "png" && shot_.output.view == ViewTransform::Raw) key.add("linear");
   if (extension == "png" && shot_.output.burn_in) {
     const BurnIn words = frame_words(shot_.settings, frame);
     key.add(words.left).add(words.right);

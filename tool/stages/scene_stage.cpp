@@ -8,6 +8,7 @@
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "tool/stages/appearance_key.h"
 #include "tool/stages/atomic_file.h"
 
 namespace softreel {
@@ -132,14 +133,6 @@ std::vector<Vec3f> to_float(const std::vector<Vec3>& values) {
   result.reserve(values.size());
   for (const Vec3& value : values) result.push_back(value.cast<float>());
   return result;
-}
-
-void add(KeyHasher& key, const Appearance& a) {
-  key.add(a.base_color).add(a.roughness).add(a.metallic).add(a.specular).add(a.transmission).add(a.ior);
-  key.add(a.absorption).add(a.emission);
-  key.add(a.coat).add(a.coat_roughness).add(a.coat_ior).add(a.coat_color);
-  key.add(a.sheen).add(a.sheen_roughness).add(a.sheen_color);
-  key.add(a.subsurface).add(a.subsurface_radius).add(a.subsurface_scale).add(a.subsurface_anisotropy);
 }
 
 void add(KeyHasher& key, const Camera& c) {

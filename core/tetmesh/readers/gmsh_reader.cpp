@@ -26,8 +26,12 @@ class GmshReader {
         is_old_ ? read_old_nodes() : read_nodes();
       else if (section == "$Elements")
         is_old_ ? read_old_elements() : read_elements();
+      else if (section == "$ElementData")
+        read_element_data();
       in_.skip_past("$End" + section.substr(1));
     }
+    for (const std::int64_t tag : tet_tags_)
+      if (const auto found = fill_.find(tag); found != fill_.end()) contents_.fill.push_back(found->second);
     return std::move(contents_);
   }
 
@@ -111,16 +115,18 @@ class GmshReader {
     return node;
   }
 
-  /// One element's nodes, read by `next`.
+  /// One element's nodes, read by `next`. element: its tag.
   template <typename Next>
-  void read_element(std::int64_t type, const Next& next) {
+  void read_element(std::int64_t type, std::int64_t element, const Next& next) {
     std::array<std::int64_t, 4> tet{};
     const std::size_t count = nodes_of(type);
     for (std::size_t k = 0; k < count; ++k) {
       const std::int64_t tag = next();
       if (type == kTetrahedron) tet[k] = node_of(tag);
     }
-    if (type == kTetrahedron) contents_.tets.push_back(tet);
+    if (type != kTetrahedron) return;
+    contents_.tets.push_back(tet);
+    tet_tags_.push_back(element);
   }
 
   void read_old_elements() {
@@ -133,9 +139,9 @@ class GmshReader {
       const std::size_t tags = in_.checked_count(small(), 1);
       if (block == 0 || block > left) throw in_.cut_off();
       for (std::size_t e = 0; e < block; ++e) {
-        if (is_binary_) small();
+        const std::int64_t element = is_binary_ ? small() : first;
         for (std::size_t k = 0; k < tags; ++k) small();
-        read_element(type, [&] { return small(); });
+        read_element(type, element, [&] { return small(); });
       }
       left -= block;
     }
@@ -151,15 +157,37 @@ class GmshReader {
       const std::int64_t type = small();
       const std::size_t count = in_.checked_count(large(), 2);
       for (std::size_t e = 0; e < count; ++e) {
-        large();
-        read_element(type, [&] { return large(); });
+        const std::int64_t element = large();
+        read_element(type, element, [&] { return large(); });
       }
+    }
+  }
+
+  /// Values "fill", one an element, in both versions alike; others are left for the section's end to be found.
+  void read_element_data() {
+    in_.line();
+    bool is_fill = false;
+    const std::size_t names = in_.count(1);
+    in_.line();
+    for (std::size_t k = 0; k < names; ++k) is_fill = (in_.line() == "\"fill\"" && k == 0) || is_fill;
+    if (!is_fill) return;
+    const std::size_t times = in_.count(1);
+    for (std::size_t k = 0; k < times; ++k) in_.number();
+    std::vector<std::int64_t> numbers(in_.count(1));  // step, numbers an element, elements
+    for (std::int64_t& number : numbers) number = in_.integer();
+    if (numbers.size() < 3 || numbers[1] != 1) return;
+    begin_binary();
+    for (std::size_t left = in_.checked_count(numbers[2], 4); left > 0; --left) {
+      const std::int64_t element = small();
+      fill_[element] = real();
     }
   }
 
   ByteReader in_;
   TetFileContents contents_;
   KeyIndex tags_;
+  std::vector<std::int64_t> tet_tags_;   ///< per tetrahedron
+  std::map<std::int64_t, double> fill_;  ///< by element
   bool is_old_ = false, is_binary_ = false;
 };
 

@@ -6,12 +6,17 @@
 namespace softreel::detail {
 namespace {
 
-/// The value of an attribute in the text of a tag, "" if it has none.
+/// The value of an attribute in the text of a tag, in quotes of either kind; "" if it has none.
 std::string attribute(std::string_view tag, const std::string& name) {
-  const std::size_t found = tag.find(" " + name + "=\"");
-  if (found == std::string_view::npos) return {};
-  const std::size_t begin = found + name.size() + 3;
-  return std::string(tag.substr(begin, tag.find('"', begin) - begin));
+  for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
+    if (at == 0 || !is_blank(tag[at - 1])) continue;
+    std::string_view rest = trimmed(tag.substr(at + name.size()));
+    if (!rest.starts_with('=')) continue;
+    rest = trimmed(rest.substr(1));
+    if (!rest.starts_with('"') && !rest.starts_with('\'')) continue;
+    return std::string(rest.substr(1, rest.find(rest.front(), 1) - 1));
+  }
+  return {};
 }
 
 /// Value of a base64 digit, -1 for what is none.
@@ -109,15 +114,20 @@ class VtuReader {
     const std::string_view head = source_.bytes.substr(0, appended_at_);
     if (head.find("<CellData") == std::string_view::npos) return {};
     const std::string_view data = section("CellData");
-    return data.find(" Name=\"fill\"") == std::string_view::npos ? std::vector<double>{} : array(data, "fill");
+    return find_array(data, "fill") == std::string_view::npos ? std::vector<double>{} : array(data, "fill");
   }
 
-  /// The array of a name in a section; the first one for "".
-  std::vector<double> array(std::string_view text, const std::string& name) const {
+  /// Where the array of a name begins in a section, the first one for ""; npos if there is none.
+  std::size_t find_array(std::string_view text, const std::string& name) const {
     std::size_t begin = text.find("<DataArray");
     while (begin != std::string_view::npos && !name.empty() &&
            attribute(tag_at(text.substr(begin), "<DataArray"), "Name") != name)
       begin = text.find("<DataArray", begin + 1);
+    return begin;
+  }
+
+  std::vector<double> array(std::string_view text, const std::string& name) const {
+    const std::size_t begin = find_array(text, name);
     if (begin == std::string_view::npos) throw cut_off();
     const std::string_view tag = tag_at(text.substr(begin), "<DataArray");
     const std::string format = attribute(tag, "format"), type = attribute(tag, "type");

@@ -203,6 +203,29 @@ TEST(DecodeTetMesh, ReadsAllVariantsOfVtk) {
   expect_two_tets(vtu("binary"), ".vtu");
 }
 
+TEST(DecodeTetMesh, ReadsVtuWithAttributesInSingleQuotesAndBlanksAboutTheirSigns) {
+  std::string text = vtu("ascii");
+  std::replace(text.begin(), text.end(), '"', '\'');
+  expect_two_tets(text, ".vtu");
+  const std::string end = "</Cells>\n";
+  text.insert(text.find(end) + end.size(),
+              "<CellData>\n<DataArray type='Float64'\nName = 'fill' format='ascii'>0.5 1</DataArray>\n</CellData>\n");
+  EXPECT_EQ(decode(text, ".vtu").mesh.fill, (std::vector<double>{0.5, 1}));
+}
+
+TEST(DecodeTetMesh, ReadsTheFillOfGmshFiles) {
+  TetMesh mesh = two_tets();
+  mesh.fill = {0.25, 1};
+  EXPECT_EQ(decode(encoded(mesh, ".msh"), ".msh").mesh.fill, mesh.fill);
+  const std::string head = "$ElementData\n1\n\"fill\"\n1\n0\n3\n0\n1\n2\n", end = "\n$EndElementData\n";
+  const std::string binary = raw(std::int32_t{3}, 1.0) + raw(std::int32_t{2}, 0.25);
+  for (const std::string& file : {gmsh2_binary(), gmsh4(true)})
+    EXPECT_EQ(decode(file + head + binary + end, ".msh").mesh.fill, mesh.fill);
+  std::string other = encoded(mesh, ".msh");
+  other.replace(other.find("\"fill\""), 6, "\"heat\"");
+  EXPECT_TRUE(decode(other, ".msh").mesh.fill.empty());
+}
+
 TEST(DecodeTetMesh, TurnsInvertedElementsRoundAndLeavesOutUnusedNodes) {
   TetMesh mesh = two_tets();
   std::swap(mesh.tets[1][0], mesh.tets[1][1]);

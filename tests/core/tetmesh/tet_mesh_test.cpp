@@ -169,6 +169,19 @@ TEST(EncodeTetMesh, MeditListsNodesBoundaryAndElements) {
   EXPECT_NE(text.find("Tetrahedra\n3\n1 2 3 4 0\n"), std::string::npos);
 }
 
+TEST(EncodeTetMesh, SaysThatMeditHasNoPlaceForFills) {
+  TetMesh mesh = unit_corner();
+  std::vector<std::string> warnings;
+  const Log log{nullptr, [&](const std::string& line) { warnings.push_back(line); }};
+  encode_tet_mesh(mesh, ".mesh", log);
+  mesh.fill = {0.5};
+  encode_tet_mesh(mesh, ".msh", log);
+  EXPECT_TRUE(warnings.empty());
+  encode_tet_mesh(mesh, ".mesh", log);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find(".vtu"), std::string::npos);
+}
+
 TEST(EncodeTetMesh, RefusesOtherFormatsAndNamesItsOwn) {
   try {
     encode_tet_mesh(unit_corner(), ".stl");

@@ -43,6 +43,25 @@ TEST(PngFile, HasTheSameBytesWithAnyNumberOfThreads) {
   }
 }
 
+TEST(PngFile, TellsWhetherItsValuesAreLinearAndReadsThemBackAsTheyAre) {
+  const std::string chunk("gAMA\x00\x01\x86\xa0", 8);
+  const auto text_of = [](const std::vector<std::uint8_t>& bytes) { return std::string(bytes.begin(), bytes.end()); };
+  for (const std::vector<std::uint8_t>& alpha : {std::vector<std::uint8_t>{}, std::vector<std::uint8_t>{255, 9}}) {
+    DisplayImage image{2, 1, {200, 100, 50, 0, 128, 255}, alpha};
+    EXPECT_NE(text_of(encode_png(image)).find("sRGB"), std::string::npos);
+    EXPECT_EQ(text_of(encode_png(image)).find("gAMA"), std::string::npos);
+    EXPECT_FALSE(read_back(encode_png(image)).linear);
+    image.linear = true;
+    const std::vector<std::uint8_t> bytes = encode_png(image);
+    EXPECT_NE(text_of(bytes).find(chunk), std::string::npos);
+    EXPECT_EQ(text_of(bytes).find("sRGB"), std::string::npos);
+    const DisplayImage back = read_back(bytes);
+    EXPECT_TRUE(back.linear);
+    EXPECT_EQ(back.pixels, image.pixels);
+    EXPECT_EQ(back.alpha, image.alpha);
+  }
+}
+
 TEST(PngFile, IsSmallWhereThePictureIsPlain) {
   const DisplayImage plain{640, 400, std::vector<std::uint8_t>(640 * 400 * 3, 77)};
   EXPECT_LT(encode_png(plain).size(), plain.pixels.size() / 100);

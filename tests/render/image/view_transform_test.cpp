@@ -76,6 +76,22 @@ TEST(ApplyView, AcesFitKeepsGreysGreyRisesAndStaysInRange) {
 TEST(ToDisplay, RawHasNoCurve) {
   const Image image{1, 1, {{"R", {0.5f}}, {"G", {-1.0f}}, {"B", {3.0f}}}};
   EXPECT_EQ(to_display(image, ViewTransform::Raw, 0).pixels, (std::vector<std::uint8_t>{128, 0, 255}));
+  EXPECT_TRUE(to_display(image, ViewTransform::Raw, 0).linear);
+  EXPECT_FALSE(to_display(image, ViewTransform::Standard, 0).linear);
+}
+
+TEST(ToDisplay, WhatIsNoNumberIsZeroInEveryViewAndInTheAlpha) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const Image image{2, 1, {{"R", {none, 0.5f}}, {"G", {1.0f, none}}, {"B", {0.0f, 1.0f}}, {"A", {1.0f, none}}}};
+  for (const ViewTransform view : {ViewTransform::Raw, ViewTransform::Standard}) {
+    const DisplayImage shown = to_display(image, view, 0);
+    EXPECT_EQ(shown.alpha, (std::vector<std::uint8_t>{255, 0}));
+    const std::uint8_t half = view == ViewTransform::Raw ? 128 : 188;
+    EXPECT_EQ(shown.pixels, (std::vector<std::uint8_t>{0, 255, 0, half, 0, 255}));
+  }
+  const Image zero{2, 1, {{"R", {0.0f, 0.5f}}, {"G", {1.0f, 0.0f}}, {"B", {0.0f, 1.0f}}, {"A", {1.0f, 0.0f}}}};
+  for (const ViewTransform view : {ViewTransform::Filmic, ViewTransform::AcesFit})
+    EXPECT_EQ(to_display(image, view, 0).pixels, to_display(zero, view, 0).pixels);
 }
 
 TEST(ToDisplay, ExposureCountsInStops) {

@@ -50,6 +50,29 @@ TEST_F(ControlGroups, LeaveWhatTheTightestOneLeaves) {
   EXPECT_EQ(left(), 400);
 }
 
+TEST_F(ControlGroups, OfVersion1HaveFilesAndPathsOfTheirOwn) {
+  fs::create_directories(root_ / "memory/batch/job");
+  write("membership", "4:cpu,memory:/batch/job\n3:cpuset:/elsewhere\n0::/slice/job\n");
+  write("memory/batch/job/memory.limit_in_bytes", "9223372036854771712\n");
+  write("memory/batch/job/memory.usage_in_bytes", "1000\n");
+  EXPECT_TRUE(std::isinf(left()));
+  write("memory/batch/memory.limit_in_bytes", "2000\n");
+  write("memory/batch/memory.usage_in_bytes", "1500\n");
+  write("memory/batch/memory.stat", "inactive_file 1\ntotal_inactive_file 200\ntotal_active_file 100\n");
+  EXPECT_EQ(left(), 800);
+  write("slice/job/memory.max", "1000\n");
+  write("slice/job/memory.current", "300\n");
+  EXPECT_EQ(left(), 700) << "the tighter of both versions";
+}
+
+TEST_F(ControlGroups, OfVersion1InAContainerAreFoundAtTheRoot) {
+  fs::create_directories(root_ / "memory");
+  write("membership", "4:memory:/docker/0123\n");
+  write("memory/memory.limit_in_bytes", "2000\n");
+  write("memory/memory.usage_in_bytes", "500\n");
+  EXPECT_EQ(left(), 1500);
+}
+
 TEST(AvailableMemory, IsSaidByThisSystem) {
   EXPECT_GT(available_memory(), 0);
   EXPECT_TRUE(std::isfinite(available_memory()));

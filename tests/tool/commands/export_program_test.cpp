@@ -283,6 +283,16 @@ TEST_F(ExportProgram, TheCameraOfUsdaMovesWhereTheShotsDoesAndStaysOtherwise) {
   EXPECT_NEAR(lengths.at(3).number, 0.9, 1e-7);
 }
 
+TEST_F(ExportProgram, WarnsOfWhatALookLosesAndWritesAgainWhereItChanged) {
+  const Outcome lost = export_shot("--format glb --set material.soft.subsurface=0.5");
+  ASSERT_EQ(lost.status, 0) << lost.err;
+  EXPECT_NE(lost.err.find("left out of glb files"), std::string::npos) << lost.err;
+  const Outcome glows = export_shot("--format glb --set material.soft.emission=[4,2,0]");
+  EXPECT_EQ(written_and_kept(glows), std::pair(1, 0));
+  EXPECT_EQ(glows.err.find("left out"), std::string::npos) << glows.err;
+  EXPECT_NE(read_glb(bytes("ball.ball.glb")).header.find("emissiveStrength"), std::string::npos);
+}
+
 TEST(ExportHelp, NamesEveryFormatWithItsLine) {
   const Outcome help = run("softreel export --help");
   for (const char* line : {"obj: Wavefront", "ply: binary", "pc2: PC2", "mdd: MDD", "glb: binary glTF", "usda: USD"})

@@ -217,6 +217,16 @@ TEST_F(Farm, ARefusedRetryLeavesTheRecordAsItWas) {
   EXPECT_NE(read_text(folder_ + "/out/.farm/ball/scripts/frames.sh").find("render.samples=3"), std::string::npos);
 }
 
+TEST_F(Farm, ARetryAddsItsValuesToThoseOfTheSubmission) {
+  start("added");
+  ASSERT_EQ(farm("--engine openjd --set render.samples=3 --set output.exposure=1").status, 0);
+  const Outcome again = farm("--retry --set output.exposure=2");
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.err.find("as it was submitted: --set 'render.samples=3';"), std::string::npos) << again.err;
+  const json sets = json::parse(read_text(folder_ + "/out/.farm/ball/submission.json"))["shot"]["sets"];
+  EXPECT_EQ(sets, json({"render.samples=3", "output.exposure=2"}));
+}
+
 TEST_F(Farm, SaysWhyAJobWasRefusedEvenIfNoneCanBeTakenBack) {
   start("stubborn");
   write_text(slurm_ + "/hold", "");

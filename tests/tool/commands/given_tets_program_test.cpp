@@ -63,12 +63,24 @@ TEST(GivenTets, AreABodyOfTheirOwnInTheirNodesOrder) {
 
 TEST(GivenTets, SayWhichFieldsHaveNoEffectBesideThem) {
   const std::string folder = folder_with_tets("given_beside");
-  const Outcome outcome =
-      run(fmt::format("softreel simulate {0}/shot.toml --output {0}/out --quiet --frames 1 --set "
-                      "body.mesh={0}/ball.vtu --set body.tets=77",
-                      folder));
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("body.ball.tets has no effect"), std::string::npos) << outcome.err;
+  const auto simulate = [&](const std::string& shot, const std::string& sets) {
+    return run(fmt::format("softreel simulate {} --output {}/out --quiet --frames 1 {}", shot, folder, sets));
+  };
+  const std::string mesh = fmt::format("--set body.mesh={}/ball.vtu ", folder);
+  for (const char* tets : {"77", "20000"}) {
+    const Outcome outcome = simulate(folder + "/shot.toml", mesh + "--set body.tets=" + tets);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("body.ball.tets has no effect"), std::string::npos) << tets << outcome.err;
+  }
+  std::string shot = read_text(folder + "/shot.toml");
+  const std::size_t line = shot.find("tets = ");
+  ASSERT_NE(line, std::string::npos);
+  shot.erase(line, shot.find('\n', line) - line);
+  write_text(folder + "/plain.toml", shot);
+  EXPECT_EQ(simulate(folder + "/plain.toml", mesh).err.find("has no effect"), std::string::npos);
+  const Outcome resolved = simulate(folder + "/out/ball.resolved.toml", "");
+  EXPECT_EQ(resolved.status, 0) << resolved.err;
+  EXPECT_EQ(resolved.err.find("has no effect"), std::string::npos) << "what was not given is not written";
 }
 
 TEST(GivenTets, OfAnotherBodyAreRefused) {

@@ -100,6 +100,8 @@ class Interrupt : public ::testing::TestWithParam<Phase> {
     adopt_orphans();
     folder_ = shot_folder("interrupt");
     render_in_peace(folder_, folder_ + "/finished", "--set output.movie=true");
+    // What is known of the files of a run that ended early: no temporary file, though a finished run folds it away.
+    write_text(folder_ + "/finished/.ball.manifest.journal", "");
     write_text(folder_ + "/sphere.obj", sphere_obj(GetParam().rings));
     // The cache keeps what was read of a large file, too.
     if (GetParam().rings > kLarge)

@@ -37,6 +37,23 @@ TEST_F(Leftovers, ARenderSaysThatItRemovesMovieAndSheetAndMakesNoMovieOfSomeFram
   EXPECT_TRUE(says(some.err, "no movie: it is made when all frames, 1 to 4, are asked for")) << some.err;
 }
 
+TEST_F(Leftovers, AShorterShotRemovesTheKnownPicturesOfFramesThatItNoLongerHas) {
+  ASSERT_EQ(run_shot("render", "--set output.exr=true").status, 0);
+  const std::string strange = file("ball.0007.png"), shorter = "--set shot.frames=[1,2] ";
+  write_text(strange, "not ours");
+  EXPECT_EQ(run_shot("render", shorter + "--frames 1").status, 0);
+  EXPECT_TRUE(exists(file("ball.0003.png"))) << "some frames were asked for";
+  const Outcome whole = run_shot("render", shorter);
+  EXPECT_EQ(whole.status, 0) << whole.err;
+  EXPECT_TRUE(says(whole.err, "4 outdated pictures removed: they are of frames that the shot no longer has"))
+      << whole.err;
+  for (const char* gone : {"ball.0003.png", "ball.0004.png", "ball.0003.exr", "ball.0004.exr"})
+    EXPECT_FALSE(exists(file(gone))) << gone;
+  EXPECT_TRUE(exists(file("ball.0002.png")));
+  EXPECT_TRUE(exists(strange)) << "nobody knows it";
+  EXPECT_FALSE(says(run_shot("render", shorter).err, "no longer has"));
+}
+
 TEST_F(Leftovers, ARenderOfExrsSaysThatThereIsNoMovie) {
   const Outcome outcome =
       run_shot("render", "--frames 1 --set output.png=false --set output.exr=true --set output.movie=true");

@@ -51,6 +51,39 @@ TEST(PointCaches, RefuseNumbersThatReadersWouldShowAsGarbage) {
     }
 }
 
+TEST(MddExport, RefusesTimesThatFloatsDoNotHold) {
+  const SurfaceMesh mesh = testing::patchwork();
+  const auto message = [&](const SampleTimes& times, double fps) {
+    testing::FormatRun run("mdd");
+    run.add_body("cloth", mesh);
+    run.target().times = times;
+    run.target().settings.fps = fps;
+    return testing::error_of([&] { run.begin(); });
+  };
+  for (const std::string& text : {message({1e6, 100, 3}, 24), message({1, 1, 1}, 1e-300)}) {
+    EXPECT_NE(text.find("float32"), std::string::npos) << text;
+    EXPECT_NE(text.find("Accepted"), std::string::npos) << text;
+  }
+  EXPECT_EQ(message({-3, 1, 5}, 24), "");
+}
+
+TEST(TextureCoordinates, AreRefusedWhereTheFileCannotSayThem) {
+  for (const char* format : {"glb", "usda", "obj", "ply"})
+    for (const double bad : {1e39, std::numeric_limits<double>::quiet_NaN()}) {
+      SurfaceMesh mesh = testing::patchwork();
+      mesh.texture_coordinates[2].y() = bad;
+      testing::FormatRun run(format);
+      run.add_body("cloth", mesh);
+      const std::string message = testing::error_of([&] { run.begin(); });
+      if (bad == 1e39 && (format[0] == 'o' || format[0] == 'p')) {
+        EXPECT_EQ(message, "") << format << " holds doubles";
+        continue;
+      }
+      EXPECT_NE(message.find("texture coordinate 3"), std::string::npos) << format << ": " << message;
+      EXPECT_NE(message.find("Accepted"), std::string::npos) << format << ": " << message;
+    }
+}
+
 TEST(Pc2Export, SaysHowFarApartItsSamplesAre) {
   const SurfaceMesh mesh = testing::patchwork();
   testing::FormatRun run("pc2");

@@ -47,6 +47,26 @@ TEST(Slurm, NoDependentJobWaitsForWhatFailed) {
   for (const std::string& word : free) EXPECT_EQ(word.find("dep"), std::string::npos) << word;
 }
 
+TEST(Slurm, WaitsForWhatTheUserSaysBesideItsOwnJobs) {
+  const auto command_of = [](const std::vector<std::string>& words, const std::vector<std::string>& after) {
+    FarmSettings settings;
+    settings.sbatch = words;
+    return sbatch_command(some_shot(), kFrames, {}, settings, after, "frames.sh");
+  };
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{"--dependency=afterany:7"},
+                                                                                     {"--dep=afterany:7"},
+                                                                                     {"--dependency", "afterany:7"},
+                                                                                     {"-d", "afterany:7"},
+                                                                                     {"-dafterany:7"}}) {
+    const std::vector<std::string> command = command_of(words, {"12"});
+    EXPECT_TRUE(contains(command, "--dependency=afterok:12,afterany:7")) << words.front();
+    EXPECT_FALSE(contains(command, words.front()));
+    EXPECT_TRUE(contains(command_of(words, {}), "--dependency=afterany:7")) << words.front();
+  }
+  EXPECT_TRUE(contains(command_of({"--deadline=now", "--nice"}, {"12"}), "--deadline=now"));
+  EXPECT_THROW(command_of({"--dependency=afterok:7?afterok:8"}, {}), Error);
+}
+
 TEST(Slurm, PassesOnWhatTheUserSays) {
   FarmSettings settings;
   settings.partition = "long jobs";

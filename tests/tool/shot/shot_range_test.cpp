@@ -14,6 +14,8 @@ struct Ends {
 TEST_F(ShotRanges, EndWhereTheReferenceSays) {
   const std::vector<const char*> positive{"1e-300", "1e300"}, above_zero{"0", "-1"};
   const std::vector<const char*> share{"0", "1"}, no_share{"-0.001", "1.001"};
+  // What pictures are made with is computed on in single precision.
+  const std::vector<const char*> above_zero_single{"0", "-1", "1e39"}, positive_single{"1e-30", "1e30"};
   const std::vector<const char*> not_negative{"0", "1e30"}, negative{"-1e-9"};
   const std::vector<Ends> all{
       {"shot.fps", {"0.001", "100000"}, {"0", "100001"}},
@@ -68,15 +70,15 @@ TEST_F(ShotRanges, EndWhereTheReferenceSays) {
       {"solver.max_newton_iterations", {"1", "1000000"}, {"0", "1000001"}},
       {"solver.threads", {"0", "4096"}, {"-1", "4097"}},
       {"camera.elevation_deg", {"-90", "90"}, {"-90.1", "90.1"}},
-      {"camera.margin", positive, above_zero},
-      {"camera.focal_length_mm", positive, above_zero},
-      {"camera.sensor_width_mm", positive, above_zero},
-      {"camera.f_number", not_negative, negative},
-      {"camera.focus_distance", positive, above_zero},
-      {"light[0].size", {"[1e-9, 1]"}, {"[0, 1]", "[1, -1]"}},
-      {"light[0].color", {"[0, 0, 0]"}, {"[0, -1, 0]"}},
-      {"light[0].power", not_negative, negative},
-      {"light[1].irradiance", not_negative, negative},
+      {"camera.margin", positive_single, above_zero_single},
+      {"camera.focal_length_mm", positive_single, above_zero_single},
+      {"camera.sensor_width_mm", positive_single, above_zero_single},
+      {"camera.f_number", not_negative, {"-1e-9", "1e39"}},
+      {"camera.focus_distance", positive_single, above_zero_single},
+      {"light[0].size", {"[1e-9, 1]"}, {"[0, 1]", "[1, -1]", "[1, 1e39]"}},
+      {"light[0].color", {"[0, 0, 0]"}, {"[0, -1, 0]", "[1e39, 0, 0]"}},
+      {"light[0].power", not_negative, {"-1e-9", "1e39"}},
+      {"light[1].irradiance", not_negative, {"-1e-9", "1e39"}},
       {"light[1].angle_deg", {"0", "90"}, {"-0.1", "90.1"}},
       {"environment.zenith", {"[0, 0, 0]"}, {"[0, -1, 0]"}},
       {"environment.strength", not_negative, {"-1e-9", "1e39"}},

@@ -183,6 +183,8 @@ GlbScene read_glb(const std::string& bytes) {
   const Chunks file = read_chunks(bytes);
   require(file.header.at("asset").at("version") == "2.0", "version 2.0");
   GlbScene scene;
+  scene.header = file.header.dump();
+  scene.binary = file.binary;
   read_mesh(file, scene);
   read_node(file, scene);
   read_animation(file, scene);

@@ -11,6 +11,7 @@ namespace softreel::testing {
 
 /// The one mesh of a file with its one animation of weights.
 struct GlbScene {
+  std::string header, binary;  ///< the chunks as they are: JSON and bytes
   std::string mesh_name, material_name;
   std::array<double, 3> translation{0, 0, 0}, scale{1, 1, 1};
   std::array<double, 4> rotation{0, 0, 0, 1};  ///< x, y, z, w

@@ -100,18 +100,23 @@ class Parser {
     return value;
   }
 
+  UsdValue until(const std::string& mark, UsdValue::Kind kind) {
+    const std::size_t end = text_.find(mark, at_);
+    if (end == std::string::npos) fail(mark);
+    UsdValue value;
+    value.kind = kind;
+    value.text = text_.substr(at_, end - at_);
+    at_ = end + mark.size();
+    return value;
+  }
+
   UsdValue value() {
     UsdValue value;
     if (takes("[")) return sequence(UsdValue::Kind::List, "]");
     if (takes("(")) return sequence(UsdValue::Kind::Tuple, ")");
-    if (takes("<")) {
-      const std::size_t end = text_.find('>', at_);
-      if (end == std::string::npos) fail(">");
-      value.kind = UsdValue::Kind::Path;
-      value.text = text_.substr(at_, end - at_);
-      at_ = end + 1;
-      return value;
-    }
+    if (takes("<")) return until(">", UsdValue::Kind::Path);
+    if (takes("@@@")) return until("@@@", UsdValue::Kind::Asset);
+    if (takes("@")) return until("@", UsdValue::Kind::Asset);
     skip_blanks();
     if (at_ < text_.size() && text_[at_] == '"') {
       value.kind = UsdValue::Kind::Text;

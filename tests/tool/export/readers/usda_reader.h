@@ -9,11 +9,11 @@
 
 namespace softreel::testing {
 
-/// A number, a string, a path, a tuple or a list.
+/// A number, a string, a path, an asset, a tuple or a list.
 struct UsdValue {
-  enum class Kind { None, Number, Text, Path, Tuple, List } kind = Kind::None;
+  enum class Kind { None, Number, Text, Path, Asset, Tuple, List } kind = Kind::None;
   double number = 0;
-  std::string text;  ///< of texts and paths
+  std::string text;  ///< of texts, paths and assets
   std::vector<UsdValue> items;
 
   /// All numbers inside, in order, as float32.
