@@ -16,10 +16,9 @@ constexpr double kFlatNode = 1e-12;
 
 FollowedNode::FollowedNode(const SceneAnimation& scene, const SceneClip& clip, Index node, const ClipTiming& timing,
                            std::optional<double> reference_frame, const Placement& placement)
-    : scene_(scene), clip_(clip), node_(node), timing_(timing), placement_(placement) {
-  const ScenePose pose =
-      reference_frame ? pose_scene(scene, &clip, timing.seconds(*reference_frame)) : pose_scene(scene, nullptr, 0);
-  reference_ = pose.nodes[static_cast<std::size_t>(node)];
+    : path_(scene, &clip, {node}), timing_(timing), placement_(placement) {
+  reference_ =
+      reference_frame ? node_at(timing.seconds(*reference_frame)) : SceneNodes(scene, nullptr, {node}).at(0).back();
   const Mat3& axes = reference_.linear;
   if (!(std::abs(axes.determinant()) > kFlatNode * axes.col(0).norm() * axes.col(1).norm() * axes.col(2).norm()))
     throw input_error(
@@ -30,7 +29,7 @@ FollowedNode::FollowedNode(const SceneAnimation& scene, const SceneClip& clip, I
 }
 
 std::vector<LocalMotion> FollowedNode::motions(std::span<const FollowTie>, double frame) const {
-  const Affine now = pose_scene(scene_, &clip_, timing_.seconds(frame)).nodes[static_cast<std::size_t>(node_)];
+  const Affine now = node_at(timing_.seconds(frame));
   LocalMotion motion;
   motion.from = placement_(reference_.offset);
   motion.to = placement_(now.offset);

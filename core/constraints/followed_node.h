@@ -24,9 +24,9 @@ class FollowedNode : public FollowedMotion {
   std::uint64_t content() const override { return 0; }  // the pose is all there is
 
  private:
-  const SceneAnimation& scene_;
-  const SceneClip& clip_;
-  Index node_;
+  Affine node_at(double seconds) const { return path_.at(seconds).back(); }
+
+  SceneNodes path_;  ///< from the root to the node, which is the last: nodes stand before their children
   ClipTiming timing_;
   Placement placement_;
   Affine reference_;

@@ -51,7 +51,7 @@ Corners corners_of(const Triangle& triangle, const std::vector<Vec3>& positions)
 
 }  // namespace
 
-FollowedSurface::FollowedSurface(std::unique_ptr<const AnimatedVertices> vertices, std::vector<Vec3> reference,
+FollowedSurface::FollowedSurface(std::shared_ptr<const AnimatedVertices> vertices, std::vector<Vec3> reference,
                                  std::vector<Triangle> triangles, Binding binding, const ClipTiming& timing,
                                  const Placement& placement)
     : vertices_(std::move(vertices)),

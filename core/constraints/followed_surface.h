@@ -21,7 +21,7 @@ class FollowedSurface : public FollowedMotion {
 
   /// reference: the vertices in the scene where points are at rest; triangles: of these vertices. placement: from the
   /// animation's axes and unit to the scene. Throws input_error if every triangle is flat at the reference.
-  FollowedSurface(std::unique_ptr<const AnimatedVertices> vertices, std::vector<Vec3> reference,
+  FollowedSurface(std::shared_ptr<const AnimatedVertices> vertices, std::vector<Vec3> reference,
                   std::vector<Triangle> triangles, Binding binding, const ClipTiming& timing,
                   const Placement& placement);
 
@@ -34,7 +34,7 @@ class FollowedSurface : public FollowedMotion {
   std::vector<FollowTie> tie_to_nearest(std::span<const Vec3> points) const;
   std::vector<FollowTie> tie_to_vertices(std::span<const Index> vertices) const;
 
-  std::unique_ptr<const AnimatedVertices> vertices_;
+  std::shared_ptr<const AnimatedVertices> vertices_;
   std::vector<Vec3> reference_;
   std::vector<Triangle> triangles_;  ///< those that are not flat at the reference
   Binding binding_;

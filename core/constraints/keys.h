@@ -45,6 +45,17 @@ T Track<T>::at(double frame) const {
   return s == 0 ? a.value : T(a.value + s * (b.value - a.value));
 }
 
+/// The last frame in (after, until] at which the value jumps: from a key that stays until the next one to that one.
+template <typename T>
+std::optional<double> last_jump(const Track<T>& track, double after, double until) {
+  for (std::size_t k = track.keys.size(); k-- > 1;) {
+    const Key<T>&from = track.keys[k - 1], &to = track.keys[k];
+    if (to.frame <= after) break;
+    if (to.frame <= until && from.ease == Ease::Constant && from.value != to.value) return to.frame;
+  }
+  return std::nullopt;
+}
+
 /// What a key of a pin or pull says; rotations are angles, so that a full turn is a motion of its own.
 struct Transform {
   Vec3 translate = Vec3::Zero();  ///< m

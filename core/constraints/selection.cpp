@@ -58,13 +58,11 @@ std::optional<PointTest> space_test(const SelectionTerm& term, const Bounds& box
   return std::nullopt;
 }
 
-std::vector<Index> used_vertices(const SurfaceMesh& surface) {
-  std::vector<char> used(surface.positions.size(), 0);
-  for (const Triangle& triangle : surface.triangles)
-    for (const Index v : triangle) used[static_cast<std::size_t>(v)] = 1;
+std::vector<Index> numbers_of_used(const SurfaceMesh& surface) {
+  const std::vector<bool> used = used_vertices(surface);
   std::vector<Index> vertices;
   for (std::size_t v = 0; v < used.size(); ++v)
-    if (used[v] != 0) vertices.push_back(static_cast<Index>(v));
+    if (used[v]) vertices.push_back(static_cast<Index>(v));
   return vertices;
 }
 
@@ -134,7 +132,7 @@ const std::vector<double>& weights_of(const WeightSource& source, std::span<cons
 
 std::vector<Index> select_points(const Selection& selection, const SurfaceMesh& surface,
                                  std::span<const WeightMap> maps) {
-  const std::vector<Index> used = used_vertices(surface);
+  const std::vector<Index> used = numbers_of_used(surface);
   const Bounds box = used_bounds(surface);
   std::vector<char> marked(surface.positions.size(), 0);
   for (const SelectionTerm& term : selection.terms) mark_term(term, surface, maps, box, used, marked);
@@ -160,7 +158,7 @@ std::vector<bool> contains(const Selection& selection, const SurfaceMesh& surfac
   if (of_surface.terms.empty()) return inside;
   std::vector<char> is_member(surface.positions.size(), 0);
   for (const Index v : select_points(of_surface, surface, maps)) is_member[static_cast<std::size_t>(v)] = 1;
-  const std::vector<Index> used = used_vertices(surface);
+  const std::vector<Index> used = numbers_of_used(surface);
   std::vector<Vec3> used_positions;
   for (const Index v : used) used_positions.push_back(surface.positions[static_cast<std::size_t>(v)]);
   const PointTree tree(std::move(used_positions));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <queue>
 #include <utility>
@@ -19,19 +20,26 @@ class BoxTree {
 
   /// Calls visit(number) for each box within `reach` of one, along every axis.
   template <typename Visit>
-  void visit_near(const Bounds& box, double reach, const Visit& visit) const {
-    std::vector<Index> open;
-    if (!nodes_.empty()) open.push_back(0);
-    while (!open.empty()) {
-      const Node& node = nodes_[static_cast<std::size_t>(open.back())];
-      const Index n = open.back();
-      open.pop_back();
-      if (!is_near(node.box, box, reach)) continue;
+  void visit_near(const Bounds& box, double reach, const Visit& visit_box) const {
+    visit([&](const Bounds& other) { return is_near(other, box, reach); }, visit_box);
+  }
+
+  /// Calls visit_box(number) for each box that meets(box); this must hold for what contains one for which it holds. It
+  /// may come to hold for fewer boxes on the way.
+  template <typename Meets, typename Visit>
+  void visit(const Meets& meets, const Visit& visit_box) const {
+    std::array<Index, kMostOpen> open;
+    std::size_t count = 0;
+    if (!nodes_.empty()) open[count++] = 0;
+    while (count > 0) {
+      const Index n = open[--count];
+      const Node& node = nodes_[static_cast<std::size_t>(n)];
+      if (!meets(node.box)) continue;
       if (node.right >= 0) {
-        open.push_back(node.right);
-        open.push_back(n + 1);
+        open[count++] = node.right;
+        open[count++] = n + 1;
       } else {
-        visit(node.last);
+        visit_box(node.last);
       }
     }
   }
@@ -73,6 +81,9 @@ class BoxTree {
     Index first = 0, last = 0;  ///< least and greatest number of the boxes below
     Index right = -1;           ///< the left child follows its parent; -1: a leaf, one box
   };
+  /// Of each level one child waits; a tree of 2^31 boxes has 31 levels.
+  static constexpr std::size_t kMostOpen = 64;
+
   Index build(const std::vector<Bounds>& boxes, std::vector<Index>& order, std::size_t begin, std::size_t end);
 
   std::vector<Node> nodes_;

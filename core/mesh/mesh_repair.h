@@ -18,10 +18,9 @@ namespace softreel {
 ///   removed with both, which changes neither inside nor outside and closes the rest;
 /// - neighbours across edges of two triangles are made to agree, the minority of a piece giving way to the majority (by
 ///   area); one-sided pieces (Moebius strips) stay;
-/// - closed pieces are turned outward. A piece inside of another stays a cavity if it was oriented against its
-/// container,
-///   and solid if it was oriented like it.
-/// Cost: two sorts, and a ray through the possible containers of each closed piece.
+/// - closed pieces are turned outward. A piece inside of another, closed or open, stays a cavity if it was oriented
+///   against its container, and solid if it was oriented like it.
+/// Cost: two sorts, and what find_inverted_shells takes.
 std::vector<std::string> repair_mesh(SurfaceMesh& mesh);
 
 }  // namespace softreel

@@ -50,4 +50,35 @@ void PointTree::search(std::size_t begin, std::size_t end, int axis, const Vec3&
     search(begin, middle, next_axis, q, best);
 }
 
+std::vector<Index> PointTree::nearest(const Vec3& q, std::size_t count) const {
+  std::vector<Best> best;
+  if (count > 0) search(0, order_.size(), 0, q, count, best);
+  std::sort_heap(best.begin(), best.end());
+  std::vector<Index> indices;
+  for (const Best& one : best) indices.push_back(one.index);
+  return indices;
+}
+
+void PointTree::search(std::size_t begin, std::size_t end, int axis, const Vec3& q, std::size_t count,
+                       std::vector<Best>& best) const {
+  if (begin >= end) return;
+  const std::size_t middle = begin + (end - begin) / 2;
+  const Vec3& p = points_[static_cast<std::size_t>(order_[middle])];
+  const Best own{(p - q).squaredNorm(), order_[middle]};
+  if (best.size() == count && own < best.front()) {
+    std::pop_heap(best.begin(), best.end());
+    best.pop_back();
+  }
+  if (best.size() < count) {
+    best.push_back(own);
+    std::push_heap(best.begin(), best.end());
+  }
+  const double beyond = q[axis] - p[axis];
+  const auto search_side = [&](bool lower) {
+    search(lower ? begin : middle + 1, lower ? middle : end, (axis + 1) % 3, q, count, best);
+  };
+  search_side(beyond < 0);
+  if (best.size() < count || beyond * beyond <= best.front().squared_distance) search_side(!(beyond < 0));
+}
+
 }  // namespace softreel

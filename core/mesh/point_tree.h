@@ -16,6 +16,10 @@ class PointTree {
   /// Index (in the order given) of the point nearest to q, of several the lowest; -1 of no points. Cost: about log n.
   Index nearest(const Vec3& q) const;
 
+  /// The `count` nearest points, or all if there are fewer; nearer ones first, of equally near ones the lower number.
+  /// Cost: about log n, and count log(count).
+  std::vector<Index> nearest(const Vec3& q, std::size_t count) const;
+
   /// Calls visit(index) for each point whose coordinates all are within `reach` of q's. Cost: about log n and the
   /// number of points in that cube.
   template <typename Visit>
@@ -27,9 +31,16 @@ class PointTree {
   struct Best {
     double squared_distance;
     Index index;
+    bool operator<(const Best& other) const {
+      return squared_distance != other.squared_distance ? squared_distance < other.squared_distance
+                                                        : index < other.index;
+    }
   };
   void build(std::size_t begin, std::size_t end, int axis);
   void search(std::size_t begin, std::size_t end, int axis, const Vec3& q, Best& best) const;
+  /// best: a heap of at most `count`, the farthest on top.
+  void search(std::size_t begin, std::size_t end, int axis, const Vec3& q, std::size_t count,
+              std::vector<Best>& best) const;
 
   template <typename Visit>
   void visit_near(std::size_t begin, std::size_t end, int axis, const Vec3& q, double reach, const Visit& visit) const {

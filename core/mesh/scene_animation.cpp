@@ -39,11 +39,19 @@ Affine local_at(const NodeChannel& channel, double seconds) {
   return local;
 }
 
-std::vector<Affine> joint_maps(const SceneMesh& mesh, const ScenePose& pose) {
+std::vector<Affine> joint_maps(const SceneMesh& mesh, const SceneNodes& nodes, const std::vector<Affine>& pose) {
   std::vector<Affine> maps;
-  for (const SkinJoint& joint : mesh.joints)
-    maps.push_back(pose.nodes[static_cast<std::size_t>(joint.node)] * joint.from_bind);
+  for (const SkinJoint& joint : mesh.joints) maps.push_back(pose[nodes.place(joint.node)] * joint.from_bind);
   return maps;
+}
+
+/// What the clip says of a mesh's morph targets; of several the last, as in pose_scene.
+const MorphChannel* morph_channel(const SceneClip* clip, Index mesh) {
+  const MorphChannel* found = nullptr;
+  if (clip != nullptr)
+    for (const MorphChannel& channel : clip->morphs)
+      if (channel.mesh == mesh) found = &channel;
+  return found;
 }
 
 Vec3 posed_vertex(const SceneMesh& mesh, const Affine& node, const std::vector<Affine>& joints,
@@ -84,46 +92,98 @@ ScenePose pose_scene(const SceneAnimation& scene, const SceneClip* clip, double 
   return pose;
 }
 
-SceneVertices::SceneVertices(const SceneAnimation& scene, const SceneClip* clip, std::vector<Index> meshes)
-    : scene_(scene), clip_(clip), meshes_(std::move(meshes)), first_{0} {
-  for (const Index m : meshes_)
-    first_.push_back(first_.back() + static_cast<Index>(scene.meshes[static_cast<std::size_t>(m)].positions.size()));
+SceneNodes::SceneNodes(const SceneAnimation& scene, const SceneClip* clip, const std::vector<Index>& wanted)
+    : scene_(scene) {
+  std::vector<bool> is_taken(scene.nodes.size(), false);
+  for (Index n : wanted)
+    for (; n >= 0 && !is_taken[static_cast<std::size_t>(n)]; n = scene.nodes[static_cast<std::size_t>(n)].parent)
+      is_taken[static_cast<std::size_t>(n)] = true;
+  for (std::size_t n = 0; n < is_taken.size(); ++n)
+    if (is_taken[n]) numbers_.push_back(static_cast<Index>(n));
+  channels_.resize(numbers_.size(), nullptr);
+  if (clip == nullptr) return;
+  for (const NodeChannel& channel : clip->nodes)
+    if (is_taken[static_cast<std::size_t>(channel.node)]) channels_[place(channel.node)] = &channel;
 }
 
-std::vector<Vec3> SceneVertices::posed(const ScenePose& pose, std::span<const Index> vertices) const {
+std::size_t SceneNodes::place(Index node) const {
+  return static_cast<std::size_t>(std::lower_bound(numbers_.begin(), numbers_.end(), node) - numbers_.begin());
+}
+
+std::vector<Affine> SceneNodes::at(double seconds) const {
+  std::vector<Affine> maps;
+  maps.reserve(numbers_.size());
+  for (std::size_t k = 0; k < numbers_.size(); ++k) {
+    const SceneNode& node = scene_.nodes[static_cast<std::size_t>(numbers_[k])];
+    const Affine local = channels_[k] != nullptr ? local_at(*channels_[k], seconds) : node.rest;
+    maps.push_back(node.parent >= 0 ? maps[place(node.parent)] * local : local);
+  }
+  return maps;
+}
+
+std::vector<Index> nodes_of_meshes(const SceneAnimation& scene, const std::vector<Index>& meshes) {
+  std::vector<Index> nodes;
+  for (const Index m : meshes) {
+    const SceneMesh& mesh = scene.meshes[static_cast<std::size_t>(m)];
+    nodes.push_back(mesh.node);
+    for (const SkinJoint& joint : mesh.joints) nodes.push_back(joint.node);
+  }
+  return nodes;
+}
+
+SceneVertices::SceneVertices(const SceneAnimation& scene, const SceneClip* clip, std::vector<Index> meshes)
+    : scene_(scene), meshes_(std::move(meshes)), nodes_(scene, clip, nodes_of_meshes(scene, meshes_)), first_{0} {
+  for (const Index m : meshes_) {
+    morphs_.push_back(morph_channel(clip, m));
+    first_.push_back(first_.back() + static_cast<Index>(scene.meshes[static_cast<std::size_t>(m)].positions.size()));
+  }
+}
+
+std::vector<std::vector<double>> SceneVertices::morph_weights(double seconds) const {
+  std::vector<std::vector<double>> weights;
+  for (std::size_t k = 0; k < meshes_.size(); ++k)
+    weights.push_back(morphs_[k] != nullptr ? value_at(morphs_[k]->weights, seconds)
+                                            : scene_.meshes[static_cast<std::size_t>(meshes_[k])].morph_weights);
+  return weights;
+}
+
+std::vector<Vec3> SceneVertices::posed(const std::vector<Affine>& nodes,
+                                       const std::vector<std::vector<double>>& morph_weights,
+                                       std::span<const Index> vertices) const {
   std::vector<std::vector<Affine>> joints;
-  for (const Index m : meshes_) joints.push_back(joint_maps(scene_.meshes[static_cast<std::size_t>(m)], pose));
+  for (const Index m : meshes_) joints.push_back(joint_maps(scene_.meshes[static_cast<std::size_t>(m)], nodes_, nodes));
   std::vector<Vec3> positions;
   positions.reserve(vertices.size());
   for (const Index v : vertices) {
     const auto k = static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), v) - first_.begin() - 1);
-    const auto m = static_cast<std::size_t>(meshes_[k]);
-    const SceneMesh& mesh = scene_.meshes[m];
-    positions.push_back(posed_vertex(mesh, pose.nodes[static_cast<std::size_t>(mesh.node)], joints[k],
-                                     pose.morph_weights[m], static_cast<std::size_t>(v - first_[k])));
+    const SceneMesh& mesh = scene_.meshes[static_cast<std::size_t>(meshes_[k])];
+    positions.push_back(posed_vertex(mesh, nodes[nodes_.place(mesh.node)], joints[k], morph_weights[k],
+                                     static_cast<std::size_t>(v - first_[k])));
   }
   return positions;
 }
 
 std::vector<Vec3> SceneVertices::at(double seconds, std::span<const Index> vertices) const {
-  return posed(pose_scene(scene_, clip_, seconds), vertices);
+  return posed(nodes_.at(seconds), morph_weights(seconds), vertices);
 }
 
 std::vector<Vec3> SceneVertices::rest() const {
   std::vector<Index> all(static_cast<std::size_t>(count()));
   std::iota(all.begin(), all.end(), Index{0});
-  return posed(pose_scene(scene_, nullptr, 0), all);
+  std::vector<std::vector<double>> weights;
+  for (const Index m : meshes_) weights.push_back(scene_.meshes[static_cast<std::size_t>(m)].morph_weights);
+  return posed(SceneNodes(scene_, nullptr, nodes_of_meshes(scene_, meshes_)).at(0), weights, all);
 }
 
 std::vector<double> SceneVertices::pose(double seconds) const {
-  const ScenePose pose = pose_scene(scene_, clip_, seconds);
+  const std::vector<Affine> nodes = nodes_.at(seconds);
+  const std::vector<std::vector<double>> weights = morph_weights(seconds);
   std::vector<double> numbers;
-  for (const Index m : meshes_) {
-    const SceneMesh& mesh = scene_.meshes[static_cast<std::size_t>(m)];
-    add(numbers, pose.nodes[static_cast<std::size_t>(mesh.node)]);
-    for (const SkinJoint& joint : mesh.joints) add(numbers, pose.nodes[static_cast<std::size_t>(joint.node)]);
-    const std::vector<double>& weights = pose.morph_weights[static_cast<std::size_t>(m)];
-    numbers.insert(numbers.end(), weights.begin(), weights.end());
+  for (std::size_t k = 0; k < meshes_.size(); ++k) {
+    const SceneMesh& mesh = scene_.meshes[static_cast<std::size_t>(meshes_[k])];
+    add(numbers, nodes[nodes_.place(mesh.node)]);
+    for (const SkinJoint& joint : mesh.joints) add(numbers, nodes[nodes_.place(joint.node)]);
+    numbers.insert(numbers.end(), weights[k].begin(), weights[k].end());
   }
   return numbers;
 }

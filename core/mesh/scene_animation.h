@@ -93,6 +93,30 @@ struct ScenePose {
 /// clip: null for the pose without a clip.
 ScenePose pose_scene(const SceneAnimation& scene, const SceneClip* clip, double seconds);
 
+/// Some nodes of a scene and those above them: posing them costs what they are, however many others there are.
+class SceneNodes {
+ public:
+  /// scene, clip: kept by reference; clip null: they rest. wanted: numbers in scene.nodes.
+  SceneNodes(const SceneAnimation& scene, const SceneClip* clip, const std::vector<Index>& wanted);
+
+  /// The wanted nodes and those above them, rising.
+  const std::vector<Index>& numbers() const { return numbers_; }
+  /// Their maps to the scene, in the order of numbers(): bit for bit those of pose_scene.
+  std::vector<Affine> at(double seconds) const;
+  /// Where one of numbers() stands among them.
+  std::size_t place(Index node) const;
+  /// What the clip says of them, in the order of numbers(); null: nothing.
+  const std::vector<const NodeChannel*>& channels() const { return channels_; }
+
+ private:
+  const SceneAnimation& scene_;
+  std::vector<Index> numbers_;
+  std::vector<const NodeChannel*> channels_;
+};
+
+/// The nodes that place the vertices of some meshes: their own, and the joints that they hang on.
+std::vector<Index> nodes_of_meshes(const SceneAnimation& scene, const std::vector<Index>& meshes);
+
 /// Some meshes of a scene, one after the other, moved by a clip.
 class SceneVertices : public AnimatedVertices {
  public:
@@ -108,12 +132,15 @@ class SceneVertices : public AnimatedVertices {
   std::vector<Triangle> triangles() const;
 
  private:
-  std::vector<Vec3> posed(const ScenePose& pose, std::span<const Index> vertices) const;
+  std::vector<Vec3> posed(const std::vector<Affine>& nodes, const std::vector<std::vector<double>>& morph_weights,
+                          std::span<const Index> vertices) const;
+  std::vector<std::vector<double>> morph_weights(double seconds) const;
 
   const SceneAnimation& scene_;
-  const SceneClip* clip_;
   std::vector<Index> meshes_;
-  std::vector<Index> first_;  ///< per mesh, its first vertex; then the number of all
+  SceneNodes nodes_;
+  std::vector<const MorphChannel*> morphs_;  ///< per mesh what the clip says of it; null: nothing
+  std::vector<Index> first_;                 ///< per mesh, its first vertex; then the number of all
 };
 
 }  // namespace softreel

@@ -7,6 +7,7 @@
 
 #include "core/mesh/box_tree.h"
 #include "core/mesh/mesh_topology.h"
+#include "core/mesh/winding_number.h"
 
 namespace softreel {
 namespace {
@@ -19,12 +20,13 @@ struct Shell {
   bool wanted_outward = true;
 };
 
+/// The pieces that are closed, or those that are not.
 std::vector<Shell> collect_shells(const SurfaceMesh& mesh, const std::vector<Index>& piece,
-                                  const std::vector<char>& closed) {
+                                  const std::vector<char>& closed, bool wants_closed) {
   std::vector<Shell> shells;
   std::vector<Index> shell_of(closed.size(), -1);
   for (std::size_t p = 0; p < closed.size(); ++p) {
-    if (closed[p] == 0) continue;
+    if ((closed[p] != 0) != wants_closed) continue;
     shell_of[p] = static_cast<Index>(shells.size());
     shells.push_back({static_cast<Index>(p), {}, {}});
   }
@@ -124,44 +126,125 @@ class SlicedShell {
   std::vector<std::vector<Index>> slices_;
 };
 
-/// A shell is inside of another, whose box contains its own, if most of three points spread over it are.
-bool contains_shell(const SurfaceMesh& mesh, const SlicedShell& outer, const Shell& inner) {
+/// A shell is inside of something if most of three points spread over it are.
+template <typename IsInside>
+bool is_shell_inside(const SurfaceMesh& mesh, const Shell& inner, const IsInside& is_inside) {
   const auto is_triangle_inside = [&](std::size_t t) {
     Vec3 centroid = Vec3::Zero();
     for (const Index v : inner.triangles[t]) centroid += mesh.positions[static_cast<std::size_t>(v)] / 3;
-    return outer.is_inside(centroid);
+    return is_inside(centroid);
   };
   const std::size_t count = inner.triangles.size();
   const bool first = is_triangle_inside(0), middle = is_triangle_inside(count / 2);
   return first == middle ? first : is_triangle_inside(count - 1);
 }
 
+std::vector<Bounds> boxes_of(const std::vector<Shell>& shells) {
+  std::vector<Bounds> boxes;
+  for (const Shell& shell : shells) boxes.push_back(shell.bounds);
+  return boxes;
+}
+
+/// The closed pieces, and which of them is the innermost round another.
+class ClosedShells {
+ public:
+  /// shells: larger ones first, so that a container comes before what it contains.
+  ClosedShells(const SurfaceMesh& mesh, const std::vector<Shell>& shells)
+      : mesh_(mesh), shells_(shells), tree_(boxes_of(shells)), sliced_(shells.size()) {}
+
+  /// The last container before shell s; -1: none.
+  Index find_around(std::size_t s) {
+    return tree_.find_last_around(shells_[s].bounds, static_cast<Index>(s), [&](Index outer) {
+      std::unique_ptr<SlicedShell>& slices = sliced_[static_cast<std::size_t>(outer)];
+      if (slices == nullptr) slices = std::make_unique<SlicedShell>(mesh_, shells_[static_cast<std::size_t>(outer)]);
+      return is_shell_inside(mesh_, shells_[s], [&](const Vec3& p) { return slices->is_inside(p); });
+    });
+  }
+
+ private:
+  const SurfaceMesh& mesh_;
+  const std::vector<Shell>& shells_;
+  BoxTree tree_;
+  std::vector<std::unique_ptr<SlicedShell>> sliced_;  ///< once something lies in their box
+};
+
+/// The pieces with holes, for what lies inside of one of them: a ray may leave through a hole, so that winding numbers
+/// tell, not parities.
+class OpenShells {
+ public:
+  OpenShells(const SurfaceMesh& mesh, std::vector<Shell> shells)
+      : mesh_(mesh), shells_(by_size(std::move(shells))), tree_(boxes_of(shells_)), windings_(shells_.size()) {}
+
+  /// Whether one goes round a closed shell that does not go round `around` too, the closed one next to it (null: there
+  /// is none).
+  bool go_round(const Shell& inner, const Shell* around) {
+    int asked = 0;
+    const Index found = tree_.find_last_around(inner.bounds, static_cast<Index>(shells_.size()), [&](Index outer) {
+      const Shell& shell = shells_[static_cast<std::size_t>(outer)];
+      if (++asked > kMostAsked) return true;
+      return (around == nullptr || BoxTree::contains(around->bounds, shell.bounds)) && goes_round(outer, inner);
+    });
+    return found >= 0 && asked <= kMostAsked;
+  }
+
+ private:
+  /// So many of the open pieces whose boxes a shell lies in are asked, the largest first: enough of heads and clothes,
+  /// and no more work if ten thousand blades of grass bend over each other.
+  static constexpr int kMostAsked = 32;
+
+  static std::vector<Shell> by_size(std::vector<Shell> shells) {
+    std::stable_sort(shells.begin(), shells.end(),
+                     [](const Shell& a, const Shell& b) { return a.bounds.diagonal() < b.bounds.diagonal(); });
+    return shells;
+  }
+
+  bool goes_round(Index outer, const Shell& inner) {
+    std::unique_ptr<WindingNumber>& winding = windings_[static_cast<std::size_t>(outer)];
+    if (winding == nullptr) winding = make_winding(shells_[static_cast<std::size_t>(outer)]);
+    return is_shell_inside(mesh_, inner, [&](const Vec3& p) { return std::abs((*winding)(p)) > 0.5; });
+  }
+
+  /// Of its own corners only: the tables of many pieces are not to have the size of the mesh.
+  std::unique_ptr<WindingNumber> make_winding(const Shell& shell) const {
+    std::vector<Vec3> corners;
+    std::vector<Triangle> triangles;
+    for (const Triangle& t : shell.triangles) {
+      const auto first = static_cast<Index>(corners.size());
+      for (const Index v : t) corners.push_back(mesh_.positions[static_cast<std::size_t>(v)]);
+      triangles.push_back({first, first + 1, first + 2});
+    }
+    return std::make_unique<WindingNumber>(corners, triangles);
+  }
+
+  const SurfaceMesh& mesh_;
+  std::vector<Shell> shells_;  ///< smaller ones first: the last one is asked first
+  BoxTree tree_;
+  std::vector<std::unique_ptr<WindingNumber>> windings_;  ///< once something lies in their box
+};
+
 }  // namespace
 
 std::vector<char> find_inverted_shells(const SurfaceMesh& mesh, const std::vector<Index>& piece,
                                        const std::vector<char>& closed) {
-  std::vector<Shell> shells = collect_shells(mesh, piece, closed);
-  // Larger shells first: a container comes before what it contains, and the last container found is the innermost.
+  std::vector<Shell> shells = collect_shells(mesh, piece, closed, true);
   std::stable_sort(shells.begin(), shells.end(),
                    [](const Shell& a, const Shell& b) { return std::abs(a.volume6) > std::abs(b.volume6); });
+  ClosedShells closed_shells(mesh, shells);
+  std::unique_ptr<OpenShells> open_shells;  // once a shell is to be turned
   std::vector<char> inverted(closed.size(), 0);
-  std::vector<std::unique_ptr<SlicedShell>> sliced(shells.size());  // once something lies in their box
-  std::vector<Bounds> boxes;
-  for (const Shell& shell : shells) boxes.push_back(shell.bounds);
-  const BoxTree tree(boxes);
   for (std::size_t s = 0; s < shells.size(); ++s) {
-    const Index around = tree.find_last_around(boxes[s], static_cast<Index>(s), [&](Index outer) {
-      std::unique_ptr<SlicedShell>& slices = sliced[static_cast<std::size_t>(outer)];
-      if (slices == nullptr) slices = std::make_unique<SlicedShell>(mesh, shells[static_cast<std::size_t>(outer)]);
-      return contains_shell(mesh, *slices, shells[s]);
-    });
-    if (around >= 0) {
-      const Shell& outer = shells[static_cast<std::size_t>(around)];
-      const bool alike = (outer.volume6 > 0) == (shells[s].volume6 > 0);
-      shells[s].wanted_outward = outer.wanted_outward == alike;
-    }
-    if (shells[s].volume6 == 0) continue;
-    inverted[static_cast<std::size_t>(shells[s].piece)] = (shells[s].volume6 > 0) != shells[s].wanted_outward;
+    Shell& shell = shells[s];
+    const bool is_outward = shell.volume6 > 0;
+    const Index around = closed_shells.find_around(s);
+    const Shell* outer = around >= 0 ? &shells[static_cast<std::size_t>(around)] : nullptr;
+    if (outer != nullptr) shell.wanted_outward = outer->wanted_outward == ((outer->volume6 > 0) == is_outward);
+    if (shell.volume6 == 0 || is_outward == shell.wanted_outward) continue;
+    if (open_shells == nullptr)
+      open_shells = std::make_unique<OpenShells>(mesh, collect_shells(mesh, piece, closed, false));
+    if (open_shells->go_round(shell, outer))
+      shell.wanted_outward = is_outward;  // what is open is not turned: nor is what lies in it, so that both stay alike
+    else
+      inverted[static_cast<std::size_t>(shell.piece)] = 1;
   }
   return inverted;
 }

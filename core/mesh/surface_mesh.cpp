@@ -14,6 +14,13 @@ Bounds used_bounds(const SurfaceMesh& mesh) {
   return bounds;
 }
 
+std::vector<bool> used_vertices(const SurfaceMesh& mesh) {
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (const Triangle& triangle : mesh.triangles)
+    for (const Index v : triangle) used[static_cast<std::size_t>(v)] = true;
+  return used;
+}
+
 std::vector<Index> weld_positions(const std::vector<Vec3>& positions) {
   std::vector<Index> first(positions.size());
   NumberTable table(positions.size());
@@ -40,7 +47,8 @@ double corner_angle(const Vec3& a, const Vec3& b) {
 }  // namespace
 
 std::vector<Vec3> vertex_normals(const SurfaceMesh& mesh, const std::vector<Vec3>& positions) {
-  const std::vector<Index> weld = weld_positions(mesh.positions);
+  // As repair connected the triangles: a crease along rims that it joined would show.
+  const std::vector<Index> weld = mesh.joined.empty() ? weld_positions(mesh.positions) : mesh.joined;
   std::vector<Vec3> normals(positions.size(), Vec3::Zero());
   for (const Triangle& triangle : mesh.triangles) {
     std::array<Vec3, 3> p;

@@ -63,8 +63,12 @@ struct Bounds {
 /// Box of the vertices that triangles use; far unused vertices do not count.
 Bounds used_bounds(const SurfaceMesh& mesh);
 
-/// Vertex normals: angle-weighted over the triangles of all vertices with exactly equal positions, so that texture
-/// seams do not show. positions: as mesh.positions, in any deformed state. Unit length; (0, 1, 0) where undefined.
+/// Per vertex whether a triangle uses it; files may hold others beside.
+std::vector<bool> used_vertices(const SurfaceMesh& mesh);
+
+/// Vertex normals: angle-weighted over the triangles of all vertices that count as one (`joined`), so that texture
+/// seams and rims that repair closed do not show. positions: as mesh.positions, in any deformed state. Unit length; (0,
+/// 1, 0) where undefined.
 std::vector<Vec3> vertex_normals(const SurfaceMesh& mesh, const std::vector<Vec3>& positions);
 
 /// For each vertex the first vertex with exactly the same position (itself if there is none before it).

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/mesh/disjoint_sets.h"
+#include "core/mesh/point_tree.h"
+#include "core/tetmesh/cell_triangles.h"
 #include "core/tetmesh/signed_distance.h"
 #include "core/tetmesh/triangle_tree.h"
 
@@ -21,6 +24,9 @@ const Vec4 kMiddle = Vec4::Constant(0.25);
 
 /// How many triangles of a patch look for others; spread over the patch.
 constexpr std::size_t kProbes = 16;
+
+/// So many points inside all look for each other; of more each looks for so many of the next ones.
+constexpr std::size_t kFewPoints = 300, kNextPoints = 24;
 
 /// Points (i + 1/4, ...) / 6 of all i, j, k, l with sum 5: their steps, for neighbours.
 constexpr int kGridSum = 5;
@@ -65,14 +71,20 @@ class CellSurface {
   /// inside: null will do for nearest_cut.
   CellSurface(const LatticeSurface& surface, const SolidInside* inside, const BccCell& cell,
               std::span<const CellCut> cuts)
-      : surface_(surface), inside_(inside), cell_(cell), cuts_(cuts), patches_(cuts.size()) {
+      : surface_(surface),
+        inside_(inside),
+        cell_(cell),
+        cuts_(cuts),
+        triangles_(surface, cell, cuts),
+        patches_(cuts.size()),
+        patch_count_(cuts.size()) {
     const std::array<LatticeNode, 4> corners = cell_corners(cell);
     for (std::size_t k = 0; k < 4; ++k) corners_[k] = Vec3(corners[k][0], corners[k][1], corners[k][2]);
     join_sides();
   }
 
   CellParts find(std::span<Index> cut_parts) {
-    if (count_patches() > 1) join_through_solid();
+    if (patch_count_ > 1) join_through_solid();
     CellParts parts;
     parts.count = number_parts(cut_parts);
     const std::array<LatticeNode, 4> corners = cell_corners(cell_);
@@ -88,7 +100,7 @@ class CellSurface {
     std::size_t best = 0;
     double least = 1e300;
     bool best_behind = false;
-    for (std::size_t i = 0; i < cuts_.size(); ++i) {
+    triangles_.visit_nearest(p, 4 * kShort, [&](std::size_t i) {
       const Polygon& x = polygons()[i];
       for (std::size_t k = 2; k < std::max<std::size_t>(x.size(), 3); ++k) {
         const Vec3 near = nearest_on_triangle(p, x[0], x[std::min(k - 1, x.size() - 1)], x[std::min(k, x.size() - 1)]);
@@ -100,20 +112,18 @@ class CellSurface {
         least = distance;
         best_behind = behind;
       }
-    }
+    });
     return best;
   }
 
  private:
-  using Polygon = std::vector<Vec3>;
+  using Polygon = CellTriangles::Polygon;
 
-  Index count_patches() {
-    Index count = 0;
-    for (std::size_t i = 0; i < cuts_.size(); ++i) count += at(patches_.root(static_cast<Index>(i))) == i ? 1 : 0;
-    return count;
+  void join(std::size_t i, std::size_t j) {
+    if (joined(i, j)) return;
+    patches_.join(static_cast<Index>(i), static_cast<Index>(j));
+    --patch_count_;
   }
-
-  void join(std::size_t i, std::size_t j) { patches_.join(static_cast<Index>(i), static_cast<Index>(j)); }
   bool joined(std::size_t i, std::size_t j) {
     return patches_.root(static_cast<Index>(i)) == patches_.root(static_cast<Index>(j));
   }
@@ -147,44 +157,19 @@ class CellSurface {
     return weights[0] * corners_[0] + weights[1] * corners_[1] + weights[2] * corners_[2] + weights[3] * corners_[3];
   }
 
-  const Vec3& corner(std::size_t cut, std::size_t k) const {
-    return surface_.points[at(surface_.triangles[at(cuts_[cut].triangle)][k])];
-  }
-  Vec3 normal(std::size_t cut) const {
-    return (corner(cut, 1) - corner(cut, 0)).cross(corner(cut, 2) - corner(cut, 0)).normalized();
-  }
-
-  const std::vector<Polygon>& polygons() {
-    if (!polygons_.empty()) return polygons_;
-    for (const CellCut& cut : cuts_) {
-      const ClippedTriangle clipped = clip_to_cell(triangle_weights(surface_, cut.triangle, cell_));
-      Polygon polygon;
-      for (std::size_t k = 0; k < clipped.count; ++k) polygon.push_back(point_at(clipped.corners[k]));
-      polygons_.push_back(std::move(polygon));
-    }
-    return polygons_;
-  }
-
-  /// Where the line from a along d meets a triangle of the cell, in multiples of d; below 0 if it does not.
-  double meet(std::size_t cut, const Vec3& a, const Vec3& d) const {
-    const Vec3 u = corner(cut, 1) - corner(cut, 0), v = corner(cut, 2) - corner(cut, 0), s = a - corner(cut, 0);
-    const Vec3 p = d.cross(v), q = s.cross(u);
-    const double determinant = u.dot(p);
-    if (determinant == 0) return -1;
-    const double x = s.dot(p) / determinant, y = d.dot(q) / determinant;
-    return x < 0 || y < 0 || x + y > 1 ? -1 : v.dot(q) / determinant;
-  }
+  Vec3 normal(std::size_t cut) const { return triangles_.normal(cut); }
+  const std::vector<Polygon>& polygons() { return triangles_.polygons(); }
 
   /// Whether one goes from one inner point to another without leaving the solid: each crossing of the surface takes one
   /// turn away or gives one.
-  bool sees(const InnerPoint& from, const Vec3& to) const {
+  bool sees(const InnerPoint& from, const Vec3& to) {
     const Vec3 d = to - from.point;
     const double length = d.norm();
     std::vector<std::pair<double, int>> crossings;
-    for (std::size_t i = 0; i < cuts_.size(); ++i) {
-      const double t = meet(i, from.point, d);
+    triangles_.visit_along(from.point, d, 1, [&](std::size_t i) {
+      const double t = triangles_.meet(i, from.point, d);
       if (t * length > kShort && (1 - t) * length > kShort) crossings.emplace_back(t, normal(i).dot(d) > 0 ? -1 : 1);
-    }
+    });
     std::sort(crossings.begin(), crossings.end());
     // Where the outside is no wider than round-off, as between bodies that touch, the way out still comes first.
     for (std::size_t i = 1; i < crossings.size(); ++i)
@@ -201,7 +186,7 @@ class CellSurface {
   void join_through_solid() {
     std::vector<InnerPoint> points;
     probe(points);
-    if (count_patches() == 1) return;
+    if (patch_count_ == 1) return;
     const std::size_t probed = points.size();
     std::vector<std::size_t> grid;
     for (std::size_t g = 0; g < kFillSamples; ++g) {
@@ -211,12 +196,28 @@ class CellSurface {
       points.push_back({p, winding, nearest_cut(p)});
       grid.push_back(g);
     }
-    for (std::size_t i = 0; i < points.size(); ++i)
-      for (std::size_t j = i + 1; j < points.size(); ++j) {
-        if (joined(points[i].nearest, points[j].nearest)) continue;
-        const bool near = i < probed || are_neighbors(sample_grid()[grid[i - probed]], sample_grid()[grid[j - probed]]);
-        if (near && sees(points[i], points[j].point)) join(points[i].nearest, points[j].nearest);
-      }
+    visit_pairs(points, [&](std::size_t i, std::size_t j) {
+      if (joined(points[i].nearest, points[j].nearest)) return;
+      const bool near = i < probed || are_neighbors(sample_grid()[grid[i - probed]], sample_grid()[grid[j - probed]]);
+      if (near && sees(points[i], points[j].point)) join(points[i].nearest, points[j].nearest);
+    });
+  }
+
+  /// Calls visit(i, j), i < j, for points that may see each other, until all patches are joined: all pairs if the
+  /// points are few. In a crowd, as of gravel in one cell, most of them are in each other's way: the next ones.
+  template <typename Visit>
+  void visit_pairs(const std::vector<InnerPoint>& points, const Visit& visit) const {
+    if (points.size() <= kFewPoints) {
+      for (std::size_t i = 0; i < points.size() && patch_count_ > 1; ++i)
+        for (std::size_t j = i + 1; j < points.size(); ++j) visit(i, j);
+      return;
+    }
+    std::vector<Vec3> places;
+    for (const InnerPoint& point : points) places.push_back(point.point);
+    const PointTree tree(std::move(places));
+    for (std::size_t i = 0; i < points.size() && patch_count_ > 1; ++i)
+      for (const Index number : tree.nearest(points[i].point, kNextPoints))
+        if (const std::size_t j = at(number); j != i) visit(std::min(i, j), std::max(i, j));
   }
 
   /// From triangles of each patch straight into the solid: to the next triangle, or to the end of the cell. In rounds
@@ -224,7 +225,7 @@ class CellSurface {
   void probe(std::vector<InnerPoint>& points) {
     std::vector<std::vector<std::size_t>> patches(cuts_.size());
     for (std::size_t i = 0; i < cuts_.size(); ++i) patches[at(patches_.root(static_cast<Index>(i)))].push_back(i);
-    for (std::size_t round = 0; round < kProbes && count_patches() > 1; ++round)
+    for (std::size_t round = 0; round < kProbes && patch_count_ > 1; ++round)
       for (const std::vector<std::size_t>& patch : patches) {
         if (round >= patch.size()) continue;
         const std::size_t i = patch[patch.size() <= kProbes ? round : round * patch.size() / kProbes];
@@ -241,21 +242,24 @@ class CellSurface {
     if (std::abs(winding) < kInsideWinding) return;
     double end = std::max(way_out(start, direction), 4 * kShort);
     std::size_t hit = cut;
-    for (std::size_t i = 0; i < cuts_.size(); ++i) {
-      const double t = meet(i, start, direction);
-      if (t <= kShort || t >= end) continue;
+    triangles_.visit_along(start, direction, end, [&](std::size_t i) {
+      const double t = triangles_.meet(i, start, direction);
+      const bool is_first = t < end || (t == end && hit != cut && i < hit);
+      if (t <= kShort || !is_first) return;
       end = t;
       hit = i;
-    }
+    });
     if (hit != cut) join(cut, hit);
     points.push_back({start + 0.5 * end * direction, winding, cut});
   }
 
   /// Whether a triangle that is not joined to this one lies at a point of it.
   bool touches_another(std::size_t cut, const Vec3& point) {
-    for (std::size_t i = 0; i < cuts_.size(); ++i)
-      if (!joined(i, cut) && std::abs(meet(i, point, normal(cut))) < kShort) return true;
-    return false;
+    bool touches = false;
+    triangles_.visit_along(point, normal(cut), kShort, [&](std::size_t i) {
+      touches = touches || (!joined(i, cut) && std::abs(triangles_.meet(i, point, normal(cut))) < kShort);
+    });
+    return touches;
   }
 
   /// How far it is from a point of the cell to its end.
@@ -309,7 +313,7 @@ class CellSurface {
     parts.fills.assign(at(parts.count), 0.0);
     for (const GridPoint& point : sample_grid()) {
       const Vec3 p = point_at(point.weights);
-      if (std::abs(inside_->winding(p)) < kInsideWinding) continue;
+      if (std::abs(inside_->quick_winding(p)) < kInsideWinding) continue;
       const Index part = parts.count == 1 ? 0 : cut_parts[nearest_cut(p)];
       parts.fills[at(part)] += 1.0 / static_cast<double>(kFillSamples);
     }
@@ -319,9 +323,10 @@ class CellSurface {
   const SolidInside* inside_;
   BccCell cell_;
   std::span<const CellCut> cuts_;
+  CellTriangles triangles_;
   DisjointSets patches_;  ///< of cuts
+  std::size_t patch_count_;
   std::array<Vec3, 4> corners_;
-  std::vector<Polygon> polygons_;
 };
 
 std::vector<Triangle> used_triangles(const LatticeSurface& surface) {
@@ -357,9 +362,12 @@ CellParts find_cell_parts(const LatticeSurface& surface, const SolidInside& insi
   return CellSurface(surface, &inside, cell, cuts).find(cut_parts);
 }
 
-std::size_t nearest_cut_in_cell(const LatticeSurface& surface, const BccCell& cell, std::span<const CellCut> cuts,
-                                const Vec3& point) {
-  return CellSurface(surface, nullptr, cell, cuts).nearest_cut(point);
+std::vector<std::size_t> nearest_cuts_in_cell(const LatticeSurface& surface, const BccCell& cell,
+                                              std::span<const CellCut> cuts, std::span<const Vec3> points) {
+  CellSurface triangles(surface, nullptr, cell, cuts);
+  std::vector<std::size_t> nearest;
+  for (const Vec3& point : points) nearest.push_back(triangles.nearest_cut(point));
+  return nearest;
 }
 
 }  // namespace softreel

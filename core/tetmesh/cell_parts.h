@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "core/mesh/winding_number.h"
 #include "core/tetmesh/cut_cells.h"
 #include "core/tetmesh/lattice_nodes.h"
 #include "core/tetmesh/row_crossings.h"
-#include "core/tetmesh/winding_number.h"
 
 namespace softreel {
 
@@ -29,6 +29,8 @@ class SolidInside {
   int winding(const LatticeNode& node) const;
   /// Winding number of a point (lattice units), positive inside but for parts that are inside out.
   double winding(const Vec3& point) const { return winding_(surface_.world(point)); }
+  /// The same but for round-off, and quicker.
+  double quick_winding(const Vec3& point) const { return winding_.quick(surface_.world(point)); }
 
  private:
   const LatticeSurface& surface_;
@@ -51,10 +53,10 @@ struct CellParts {
 CellParts find_cell_parts(const LatticeSurface& surface, const SolidInside& inside, const BccCell& cell,
                           std::span<const CellCut> cuts, std::span<Index> cut_parts);
 
-/// The cut whose triangle is nearest to a point of the cell (lattice units), within the cell: a point of the solid is
-/// in its part. There must be one.
-std::size_t nearest_cut_in_cell(const LatticeSurface& surface, const BccCell& cell, std::span<const CellCut> cuts,
-                                const Vec3& point);
+/// Per point of the cell (lattice units) the cut whose triangle is nearest to it, within the cell: a point of the solid
+/// is in its part. There must be one.
+std::vector<std::size_t> nearest_cuts_in_cell(const LatticeSurface& surface, const BccCell& cell,
+                                              std::span<const CellCut> cuts, std::span<const Vec3> points);
 
 /// Points that stand for a cell where its fill is not exact: an error of about 1 %.
 constexpr std::size_t kFillSamples = 56;

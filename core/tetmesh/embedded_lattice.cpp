@@ -1,6 +1,7 @@
 #include "core/tetmesh/embedded_lattice.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -52,10 +53,7 @@ class Cover {
     result.branches = static_cast<Index>(copies_with_a_common_face(nodes).size());
     result.mesh.lattice = surface_.frame;
     const std::vector<Index> elements = make_elements(nodes, result.mesh);
-    const std::vector<Index> vertices = vertex_elements(elements);
-    result.mesh.carriers.reserve(points.size());
-    for (const CarriedPoint& point : points)
-      result.mesh.carriers.push_back(point.vertex >= 0 ? vertices[at(point.vertex)] : find_element(elements, point));
+    result.mesh.carriers = find_carriers(elements, points);
     for (const CoverCell& cell : cells_) result.cut_cells += cell.count > 0 ? 1 : 0;
     result.copies = static_cast<Index>(result.mesh.tets.size() - cells_.size());
     return result;
@@ -171,20 +169,35 @@ class Cover {
     std::size_t corner;
   };
 
+  /// Of more than two copies at one face each is paired with the next one: that links them as well as all pairs would.
   std::vector<FacePair> copies_with_a_common_face(DisjointSets& nodes) const {
     std::vector<FacePair> pairs;
-    for (const CoverCell& cell : cells_)
-      for (Index a = cell.first_copy; a < cell.first_copy + cell.copies; ++a)
-        for (Index b = a + 1; b < cell.first_copy + cell.copies; ++b) {
-          std::size_t apart = 0, count = 0;
-          for (std::size_t k = 0; k < 4; ++k)
-            if (nodes.root(4 * a + static_cast<Index>(k)) != nodes.root(4 * b + static_cast<Index>(k))) {
-              apart = k;
-              ++count;
-            }
-          if (count == 1) pairs.push_back({a, b, apart});
+    std::vector<std::pair<Tet, Index>> faces;  // roots, the one opposite the face last; the copy
+    for (const CoverCell& cell : cells_) {
+      if (cell.copies < 2) continue;
+      for (std::size_t apart = 0; apart < 4; ++apart) {
+        faces.clear();
+        for (Index copy = cell.first_copy; copy < cell.first_copy + cell.copies; ++copy) {
+          Tet roots = roots_of(copy, nodes);
+          std::swap(roots[apart], roots[3]);
+          faces.emplace_back(roots, copy);
         }
+        std::sort(faces.begin(), faces.end());
+        for (std::size_t i = 1; i < faces.size(); ++i) {
+          const auto& [p, a] = faces[i - 1];
+          const auto& [q, b] = faces[i];
+          if (std::equal(p.begin(), p.begin() + 3, q.begin()) && p[3] != q[3])
+            pairs.push_back({std::min(a, b), std::max(a, b), apart});
+        }
+      }
+    }
     return pairs;
+  }
+
+  static Tet roots_of(Index copy, DisjointSets& nodes) {
+    Tet roots;
+    for (std::size_t k = 0; k < 4; ++k) roots[k] = nodes.root(4 * copy + static_cast<Index>(k));
+    return roots;
   }
 
   static void merge(const FacePair& pair, DisjointSets& nodes) {
@@ -238,19 +251,20 @@ class Cover {
     std::vector<Index> elements(at(copies()));
     mesh.tets.reserve(elements.size());
     mesh.fill.reserve(elements.size());
+    std::map<Tet, Index> own;  // elements of a cell
     for (const CoverCell& cell : cells_) {
-      const auto first = static_cast<Index>(mesh.tets.size());
-      for (Index part = 0; part < cell.copies; ++part) {
-        Tet tet;
-        for (std::size_t k = 0; k < 4; ++k)
-          tet[k] = number[at(nodes.root(4 * (cell.first_copy + part) + static_cast<Index>(k)))];
-        const auto same = std::find(mesh.tets.begin() + first, mesh.tets.end(), tet);
-        elements[at(cell.first_copy + part)] = static_cast<Index>(same - mesh.tets.begin());
-        if (same == mesh.tets.end()) {
+      own.clear();
+      for (Index copy = cell.first_copy; copy < cell.first_copy + cell.copies; ++copy) {
+        Tet tet = roots_of(copy, nodes);
+        for (Index& node : tet) node = number[at(node)];
+        const auto next = static_cast<Index>(mesh.tets.size());
+        const Index element = cell.copies == 1 ? next : own.emplace(tet, next).first->second;
+        elements[at(copy)] = element;
+        if (element == next) {
           mesh.tets.push_back(tet);
           mesh.fill.push_back(0);
         }
-        mesh.fill[at(elements[at(cell.first_copy + part)])] += fills_[at(cell.first_copy + part)];
+        mesh.fill[at(element)] += fills_[at(copy)];
       }
     }
     for (double& fill : mesh.fill) fill = std::clamp(fill, kLeastFill, 1.0);
@@ -291,15 +305,45 @@ class Cover {
     return result;
   }
 
-  Index find_element(const std::vector<Index>& elements, const CarriedPoint& point) const {
-    const Vec3 place = (point.position - surface_.frame.origin) * (2.0 / surface_.frame.spacing);
+  /// Per point its element, -1 outside all of them.
+  std::vector<Index> find_carriers(const std::vector<Index>& elements, std::span<const CarriedPoint> points) const {
+    const std::vector<Index> vertices = vertex_elements(elements);
+    std::vector<Index> carriers(points.size(), -1);
+    std::vector<std::pair<Index, std::size_t>> shared;  // cells of several copies, and the points found by place there
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (points[i].vertex >= 0) {
+        carriers[i] = vertices[at(points[i].vertex)];
+        continue;
+      }
+      const Index number = find_cell_round(place_of(points[i]));
+      if (number < 0) continue;
+      if (cells_[at(number)].copies == 1)
+        carriers[i] = elements[at(cells_[at(number)].first_copy)];
+      else
+        shared.emplace_back(number, i);
+    }
+    std::sort(shared.begin(), shared.end());
+    for (std::size_t begin = 0, end = 0; begin < shared.size(); begin = end) {
+      std::vector<Vec3> places;
+      for (; end < shared.size() && shared[end].first == shared[begin].first; ++end)
+        places.push_back(place_of(points[shared[end].second]));
+      const CoverCell& cell = cells_[at(shared[begin].first)];
+      const std::vector<std::size_t> nearest = nearest_cuts_in_cell(surface_, cell.cell, cell.own(cuts_), places);
+      for (std::size_t k = 0; k < nearest.size(); ++k)
+        carriers[shared[begin + k].second] = elements[at(cut_copies_[at(cell.cuts) + nearest[k]])];
+    }
+    return carriers;
+  }
+
+  /// Lattice units.
+  Vec3 place_of(const CarriedPoint& point) const {
+    return (point.position - surface_.frame.origin) * (2.0 / surface_.frame.spacing);
+  }
+
+  /// The cell of the cover that holds a place, -1 if there is none.
+  Index find_cell_round(const Vec3& place) const {
     if (!place.allFinite() || place.cwiseAbs().maxCoeff() >= kMaxLatticeCoordinate) return -1;
-    const Index number = find_cell(cell_at(place));
-    if (number < 0) return -1;
-    const CoverCell& cell = cells_[at(number)];
-    if (cell.copies == 1) return elements[at(cell.first_copy)];
-    const std::size_t cut = nearest_cut_in_cell(surface_, cell.cell, cell.own(cuts_), place);
-    return elements[at(cut_copies_[at(cell.cuts) + cut])];
+    return find_cell(cell_at(place));
   }
 
   const LatticeSurface& surface_;

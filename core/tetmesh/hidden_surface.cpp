@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "core/mesh/winding_number.h"
 #include "core/tetmesh/surface_pieces.h"
-#include "core/tetmesh/winding_number.h"
 
 namespace softreel {
 namespace {

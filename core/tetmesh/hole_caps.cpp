@@ -39,7 +39,7 @@ HoleCaps::HoleCaps(const std::vector<Vec3>& points, const std::vector<Triangle>&
 
 bool HoleCaps::contain(const Vec3& p) const {
   if (!winding_) return false;
-  const auto is_inside = [&](const Vec3& x) { return std::abs((*winding_)(x)) > 0.5; };
+  const auto is_inside = [&](const Vec3& x) { return std::abs(winding_->quick(x)) > 0.5; };
   const double reach = kLook * std::sqrt(tree_.nearest(p).squared_distance);
   const bool inside = is_inside(p);
   return reach > 0 && std::ranges::any_of(directions(), [&](const Vec3& direction) {

@@ -6,8 +6,8 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/surface_mesh.h"
+#include "core/mesh/winding_number.h"
 #include "core/tetmesh/triangle_tree.h"
-#include "core/tetmesh/winding_number.h"
 
 namespace softreel {
 

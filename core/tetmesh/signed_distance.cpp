@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "core/mesh/surface_mesh.h"
+#include "core/mesh/winding_number.h"
 #include "core/tetmesh/narrow_band.h"
 #include "core/tetmesh/overlaps.h"
 #include "core/tetmesh/row_crossings.h"
-#include "core/tetmesh/winding_number.h"
 
 namespace softreel {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "core/base/parallel.h"
 #include "core/base/types.h"
+#include "core/mesh/winding_number.h"
 #include "core/tetmesh/lattice_nodes.h"
 #include "core/tetmesh/row_crossings.h"
 #include "core/tetmesh/triangle_tree.h"
-#include "core/tetmesh/winding_number.h"
 
 namespace softreel {
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/mesh/mesh_topology.h"
+#include "core/mesh/winding_number.h"
 #include "core/tetmesh/key_index.h"
-#include "core/tetmesh/winding_number.h"
 
 namespace softreel {
 namespace {

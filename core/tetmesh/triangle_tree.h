@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/tetmesh/ordered_triangles.h"
+#include "core/mesh/ordered_triangles.h"
 
 namespace softreel {
 

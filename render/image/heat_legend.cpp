@@ -74,12 +74,15 @@ void draw_letters(const HeatLegend& legend, const Layout& l, DisplayImage& image
   style.color = kInk;
   draw_text(image, static_cast<float>(l.bar_x), static_cast<float>(l.panel_y) + 0.8f * l.letter, legend.title, style);
   const int stroke = std::max(1, static_cast<int>(l.letter / 9)), end = l.bar_y + l.bar_height;
+  float free = -1e9f;  // from here on no label stands yet
   for (const HeatLegend::Tick& tick : legend.ticks) {
     const float x = static_cast<float>(l.bar_x) + static_cast<float>(tick.place) * static_cast<float>(l.bar_width);
     const int left = std::clamp(static_cast<int>(std::lround(x)) - stroke / 2, l.bar_x, l.bar_x + l.bar_width - stroke);
     fill_rectangle(image, left, end, stroke, static_cast<int>(0.4f * l.letter), kInk);
-    draw_text(image, x - 0.5f * text_width(tick.label, l.letter), static_cast<float>(end) + 0.75f * l.letter,
-              tick.label, style);
+    const float width = text_width(tick.label, l.letter), label = x - 0.5f * width;
+    if (label < free) continue;
+    draw_text(image, label, static_cast<float>(end) + 0.75f * l.letter, tick.label, style);
+    free = label + width + 0.5f * l.letter;
   }
 }
 

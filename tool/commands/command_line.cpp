@@ -113,7 +113,6 @@ void add_export_command(CLI::App& app, Parsed& parsed, Runner& run) {
   exporting->add_option("--format", wishes.formats, formats)
       ->option_text("LIST")
       ->delimiter(',')
-      ->allow_extra_args(false)
       ->take_all()
       ->group("Files");
   exporting->add_option("--space", wishes.space, "object (the file's own) | world [object]")
@@ -313,6 +312,7 @@ int run_command_line(int argc, char** argv) {
   add_bench_command(app, parsed, run);
   group_commands(app);
   add_log_options(app, parsed.log);
+  take_one_value_each(app);
   refuse_empty_values(app);
   app.footer(kFooter);
   try {

@@ -43,6 +43,12 @@ CLI::Validator size_limit() {
           "", "size"};
 }
 
+void take_one_value_each(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+    for (CLI::Option* option : command->get_options())
+      if (!option->get_positional()) option->allow_extra_args(false);
+}
+
 void refuse_empty_values(CLI::App& app) {
   const auto is_text = [](std::string& text) {
     return text.empty() ? std::string("the value is empty. Accepted: any other; leave the option out for its default.")

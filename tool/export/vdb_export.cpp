@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_topology.h"
-#include "core/tetmesh/winding_number.h"
+#include "core/mesh/winding_number.h"
 #include "tool/export/level_set.h"
 
 namespace softreel {

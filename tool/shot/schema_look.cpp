@@ -219,7 +219,7 @@ const Table<RenderSettings>& render_table() {
             "caustic_roughness", [](auto& r) -> auto& { return r.params.caustic_roughness; }, single(kShare), "",
             "Least roughness of what matt surfaces see: blurs caustics that would be bright specks; 0: off.")
         .add("shutter", &R::shutter, number(kShare), "frames",
-             "How long the shutter is open, up to the frame; 0: no motion blur.")
+             "How long the shutter is open, up to the frame, for the camera from its last cut on; 0: no motion blur.")
         .add("blur_segments", &R::blur_segments, whole<int>(1, 64), "",
              "Straight pieces of each point's path, and the camera's, while the shutter is open.")
         .add(

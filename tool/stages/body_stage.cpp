@@ -94,7 +94,9 @@ void require_match(const BodySettings& body, const LoadedBody& loaded, const Fil
   constexpr double kFarthest = 0.02;  // of the box's diagonal
   const double limit = kFarthest * used_bounds(loaded.surface).diagonal();
   const TriangleTree tree(filled.mesh.nodes, boundary_faces(filled.mesh));
+  const std::vector<bool> used = used_vertices(loaded.surface);
   for (std::size_t v = 0; v < loaded.surface.positions.size(); ++v) {
+    if (!used[v]) continue;
     const std::array<double, 4>& weights = filled.embedding.weights[v];
     if (*std::min_element(weights.begin(), weights.end()) >= 0) continue;
     const Vec3& p = loaded.surface.positions[v];
@@ -112,6 +114,7 @@ void require_match(const BodySettings& body, const LoadedBody& loaded, const Fil
 StageKey filled_key(const BodySettings& body, const LoadedBody& loaded) {
   KeyHasher key(kFillVersion);
   key.add(loaded.key);
+  if (!loaded.surface.joined.empty()) key.add("joined normals");  // points outside are embedded along their normals
   if (loaded.given) return key.add(loaded.given->nodes).add(loaded.given->tets).add(body.optimize).key();
   return key.add(body.edge)
       .add(body.tets)

@@ -46,9 +46,13 @@ const SceneClip& find_clip(const SceneAnimation& scene, const FollowSettings& fo
   if (follow.clip.empty())
     throw input_error(fmt::format("{} holds {} animations.\n  Accepted: clip = one of {}. Name the one to follow.",
                                   follow.file, names.size(), name_list(names)));
-  for (const SceneClip& clip : scene.clips)
-    if (clip.name == follow.clip) return clip;
-  throw unknown_name(follow.file, "clip", follow.clip, names);
+  const auto found = std::find(names.begin(), names.end(), follow.clip);
+  if (found == names.end()) throw unknown_name(follow.file, "clip", follow.clip, names);
+  if (const auto count = std::count(names.begin(), names.end(), follow.clip); count > 1)
+    throw input_error(
+        fmt::format("{} has {} animations '{}'.\n  Accepted: a clip whose name is its own. Rename the others.",
+                    follow.file, count, follow.clip));
+  return scene.clips[static_cast<std::size_t>(found - names.begin())];
 }
 
 Index find_node(const SceneAnimation& scene, const FollowSettings& follow) {
@@ -99,15 +103,15 @@ std::vector<Index> all_vertices(Index count) {
 using Binding = FollowedSurface::Binding;
 
 /// The vertices are the body's own: where they are at rest is where the body rests.
-std::unique_ptr<const FollowedMotion> follow_vertices(std::unique_ptr<const AnimatedVertices> vertices,
+std::unique_ptr<const FollowedMotion> follow_vertices(std::shared_ptr<const AnimatedVertices> vertices,
                                                       const LoadedBody& body, const ClipTiming& timing,
                                                       const Placement& placement) {
   return std::make_unique<FollowedSurface>(std::move(vertices), body.surface.positions, body.surface.triangles,
                                            Binding::Vertex, timing, placement);
 }
 
-std::unique_ptr<const FollowedMotion> follow_cache(const FollowSettings& follow, const LoadedBody& body,
-                                                   const ClipTiming& timing, const Placement& placement) {
+/// A point cache has vertices and nothing else.
+void require_cache_fields(const FollowSettings& follow) {
   using Given = std::pair<const char*, bool>;
   for (const auto& [field, given] :
        {Given{"node", !follow.node.empty()}, Given{"mesh", !follow.mesh.empty()}, Given{"clip", !follow.clip.empty()},
@@ -122,16 +126,12 @@ std::unique_ptr<const FollowedMotion> follow_cache(const FollowSettings& follow,
         fmt::format("{} is a point cache, which has no triangles to bind to.\n  Accepted: bind = "
                     "\"vertex\". Remove bind.",
                     follow.file));
-  auto vertices = std::make_unique<CachedVertices>(read_point_cache(follow.file, timing.fps));
-  if (vertices->count() != static_cast<Index>(body.surface.positions.size()))
-    throw count_mismatch(follow, vertices->count(), body, "Export the cache of this mesh");
-  return follow_vertices(std::move(vertices), body, timing, placement);
 }
 
-std::unique_ptr<const FollowedMotion> follow_meshes(const SceneAnimation& scene, const FollowSettings& follow,
+std::unique_ptr<const FollowedMotion> follow_meshes(SceneVertices moved, const FollowSettings& follow,
                                                     const LoadedBody& body, const ClipTiming& timing,
                                                     const Placement& placement) {
-  auto vertices = std::make_unique<SceneVertices>(scene, &find_clip(scene, follow), find_meshes(scene, follow));
+  auto vertices = std::make_shared<const SceneVertices>(std::move(moved));
   const bool as_many = vertices->count() == static_cast<Index>(body.surface.positions.size());
   const Binding binding = follow.bind.value_or(as_many && !follow.reference ? Binding::Vertex : Binding::Nearest);
   if (binding == Binding::Vertex) {
@@ -160,21 +160,43 @@ const SceneAnimation& FollowedFiles::scene(const std::string& path, const Log& l
   return *scene;
 }
 
+std::unique_ptr<const FollowedMotion> FollowedFiles::follow_cache(const Shot& shot, const FollowSettings& follow,
+                                                                  const LoadedBody& body, const ClipTiming& timing,
+                                                                  const Placement& placement) {
+  require_cache_fields(follow);
+  std::shared_ptr<const CachedVertices>& vertices = caches_[follow.file];
+  if (!vertices) vertices = std::make_shared<const CachedVertices>(read_point_cache(follow.file, shot.settings.fps));
+  if (vertices->count() != static_cast<Index>(body.surface.positions.size()))
+    throw count_mismatch(follow, vertices->count(), body, "Export the cache of this mesh");
+  return follow_vertices(vertices, body, timing, placement);
+}
+
+void FollowedFiles::check(const Shot& shot, const FollowedClip& clip, const ClipTiming& timing, const Log& log) {
+  require_own_names(clip);
+  const ShotSettings& settings = shot.settings;
+  for (const std::string& warning : {straight_curve_warning(clip, settings.fps),
+                                     still_clip_warning(clip, timing, settings.first_frame, settings.last_frame)})
+    if (!warning.empty() && said_.insert(warning).second) log.warn(warning);
+}
+
 const FollowedMotion& FollowedFiles::motion(const Shot& shot, const FollowSettings& follow, const LoadedBody& body,
                                             const Log& log) {
   const ClipTiming timing{follow.start.value_or(shot.settings.first_frame), shot.settings.fps, follow.speed};
   const Placement placement = follow.in_scene ? Placement{} : body.placement;
   if (is_point_cache_file(follow.file)) {
-    motions_.push_back(follow_cache(follow, body, timing, placement));
+    motions_.push_back(follow_cache(shot, follow, body, timing, placement));
     return *motions_.back();
   }
   const SceneAnimation& from = scene(follow.file, log);
+  const SceneClip& clip = find_clip(from, follow);
   if (follow.node.empty()) {
-    motions_.push_back(follow_meshes(from, follow, body, timing, placement));
+    const std::vector<Index> meshes = find_meshes(from, follow);
+    check(shot, {follow.file, from, clip, meshes, SceneNodes(from, &clip, nodes_of_meshes(from, meshes))}, timing, log);
+    motions_.push_back(follow_meshes(SceneVertices(from, &clip, meshes), follow, body, timing, placement));
   } else {
-    const SceneClip& clip = find_clip(from, follow);
-    motions_.push_back(
-        std::make_unique<FollowedNode>(from, clip, find_node(from, follow), timing, follow.reference, placement));
+    const Index node = find_node(from, follow);
+    check(shot, {follow.file, from, clip, {}, SceneNodes(from, &clip, {node})}, timing, log);
+    motions_.push_back(std::make_unique<FollowedNode>(from, clip, node, timing, follow.reference, placement));
   }
   return *motions_.back();
 }

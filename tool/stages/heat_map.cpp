@@ -90,9 +90,13 @@ double round_up(double x) {
   return 10 * power;
 }
 
-double upper_end(std::vector<double> values) {
-  // Vertices that are no numbers, as files have them beside their faces, are not seen.
-  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+double upper_end(std::vector<double> values, const SurfaceMesh& surface) {
+  CHECK(values.size() == surface.positions.size());
+  const std::vector<bool> used = used_vertices(surface);
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v < values.size(); ++v)
+    if (used[v] && std::isfinite(values[v])) values[kept++] = values[v];
+  values.resize(kept);
   if (values.empty()) return 0;
   const auto rank = static_cast<std::size_t>(kShareBelow * static_cast<double>(values.size() - 1));
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
@@ -105,7 +109,8 @@ HeatRange find_heat_range(ShotRun& run, HeatQuantity quantity) {
   const ShotSettings& settings = run.shot().settings;
   for (int frame = settings.first_frame; frame <= settings.last_frame; ++frame) {
     run.context().stop_if_cancelled();
-    for (std::size_t b = 0; b < run.body_count(); ++b) most = std::max(most, upper_end(run.heat(b, frame, quantity)));
+    for (std::size_t b = 0; b < run.body_count(); ++b)
+      most = std::max(most, upper_end(run.heat(b, frame, quantity), run.loaded(b).surface));
   }
   const HeatRange range{0, round_up(most)};
   run.context().log.info(fmt::format("heat: colours from 0 to {:.4g}, found in frames {} to {}", range.high,

@@ -38,8 +38,9 @@ struct HeatRange {
 /// The next number of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below x; x above 0.
 double round_up(double x);
 
-/// What 99 % of the values stay below (the value of that rank); 0 of none.
-double upper_end(std::vector<double> values);
+/// What 99 % of the values at the vertices that triangles use stay below (the value of that rank); 0 of none. Others,
+/// which files hold beside, are not seen, as are values that are no numbers.
+double upper_end(std::vector<double> values, const SurfaceMesh& surface);
 
 /// From 0 to the largest upper_end of a body at a frame of the whole shot, rounded up: it simulates all frames,
 /// whichever are shown, so that a picture does not depend on which others are made. Single peaks, as at pins, where

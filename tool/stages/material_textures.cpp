@@ -76,9 +76,10 @@ void require_colors(const MaterialSettings& material, const BodySettings& body, 
          "Accepted: a mesh with vertex colours (PLY red, green, blue; OBJ v x y z r g b; glTF COLOR_0). Export them "
          "too, or "
          "use base_color.");
+  const std::vector<bool> used = used_vertices(surface);
   for (std::size_t v = 0; v < surface.colors.size(); ++v) {
     const Vec3f& c = surface.colors[v];
-    if (!(c.minCoeff() >= 0 && c.maxCoeff() <= 1))
+    if (used[v] && !(c.minCoeff() >= 0 && c.maxCoeff() <= 1))
       fail(material, body, "vertex_colors",
            fmt::format("has the colour ({:.4g}, {:.4g}, {:.4g}), made linear, at vertex {}", c.x(), c.y(), c.z(), v),
            "Accepted: colours from 0 to 1 (bytes from 0 to 255). Export the mesh again.");

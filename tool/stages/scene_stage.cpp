@@ -50,6 +50,18 @@ SceneStage::SceneStage(ShotRun& run) : run_(run), textures_(run.shot()) {
   if (const StageKey key = coloring.key(); key != none) coloring_key_ = key;
 }
 
+/// Rays start off a surface by a share of its coordinates, which far away is more than shadows and contacts bear.
+void SceneStage::warn_far_from_origin() const {
+  constexpr double kFarthest = 500;  // sizes of the scene
+  const double farthest = std::max(rest_bounds_.min.cwiseAbs().maxCoeff(), rest_bounds_.max.cwiseAbs().maxCoeff());
+  const double size = rest_bounds_.diagonal();
+  if (!(farthest > kFarthest * size)) return;
+  run_.context().log.warn(
+      fmt::format("The bodies, {:.3g} m in size, reach to {:.3g} m from the origin along an axis: shadows may lose "
+                  "contact. Accepted without loss: {:.3g} m. Move bodies (body.*.translate), camera and lights nearer.",
+                  size, farthest, kFarthest * size));
+}
+
 namespace {
 
 /// The picture's upright of a camera that looks straight down or up, as if it had been tilted there from the front.
@@ -99,17 +111,33 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
   return camera;
 }
 
+std::optional<double> last_cut(const CameraSettings& settings, double after, double until) {
+  std::optional<double> cut = last_jump(settings.focal_length_mm, after, until);
+  const auto add = [&](const auto& track) { cut = std::max(cut, last_jump(track, after, until)); };
+  if (settings.f_number > 0) add(settings.focus_distance);
+  if (settings.mode != CameraMode::Place) return cut;
+  add(settings.position);
+  add(settings.target);
+  return cut;
+}
+
 std::vector<Camera> camera_motion_at(const CameraSettings& settings, const RenderSettings& render, double frame,
                                      const Bounds& rest_bounds, double aspect) {
   if (!(render.shutter > 0)) return {};
   std::vector<Camera> cameras;
+  // The picture is the shot after a cut: a camera between the two would fly through the scene.
+  const std::optional<double> cut = last_cut(settings, frame - render.shutter, frame);
   for (int k = 0; k <= render.blur_segments; ++k) {
     const double time = render.shutter * (static_cast<double>(k) / render.blur_segments - 1);
-    cameras.push_back(camera_at(settings, frame + time, rest_bounds, aspect));
+    cameras.push_back(camera_at(settings, std::max(frame + time, cut.value_or(frame + time)), rest_bounds, aspect));
   }
   const bool stands =
       std::all_of(cameras.begin(), cameras.end(), [&](const Camera& camera) { return camera == cameras.back(); });
   return stands ? std::vector<Camera>{} : cameras;
+}
+
+Camera next_camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
+  return camera_at(settings, last_cut(settings, frame, frame + 1) ? frame : frame + 1, rest_bounds, aspect);
 }
 
 SkinRequest skin_request(const RenderSettings& settings) {
@@ -147,6 +175,11 @@ Camera SceneStage::camera(double frame) const {
   return camera_at(run_.shot().camera, frame, rest_bounds_, static_cast<double>(params.width) / params.height);
 }
 
+Camera SceneStage::next_camera(int frame) const {
+  const RenderParams& params = run_.shot().render.params;
+  return next_camera_at(run_.shot().camera, frame, rest_bounds_, static_cast<double>(params.width) / params.height);
+}
+
 std::vector<Camera> SceneStage::camera_motion(int frame) const {
   const RenderSettings& render = run_.shot().render;
   return camera_motion_at(run_.shot().camera, render, frame, rest_bounds_,
@@ -177,6 +210,13 @@ void SceneStage::load_images() {
     });
 }
 
+/// Once, before the first scene: what all of them share, and what is to be said of them.
+void SceneStage::start_scenes() {
+  warn_far_from_origin();
+  for (std::size_t b = 0; b < run_.body_count(); ++b)
+    rest_positions_.push_back(std::make_shared<const std::vector<Vec3f>>(to_float(run_.loaded(b).surface.positions)));
+}
+
 Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
   const Shot& shot = run_.shot();
   CHECK(bodies.size() == run_.body_count());
@@ -186,12 +226,10 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
     environment_image_ = sky_image(SkyModel(*look.day));
     drawn_day_ = look.day;
   }
-  if (rest_positions_.empty())
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      rest_positions_.push_back(std::make_shared<const std::vector<Vec3f>>(to_float(run_.loaded(b).surface.positions)));
+  if (rest_positions_.empty()) start_scenes();
   Scene scene;
   scene.camera = look.camera;
-  if (shot.render.params.channels.has(PictureChannel::Motion)) scene.next_camera = camera(frame + 1);
+  if (shot.render.params.channels.has(PictureChannel::Motion)) scene.next_camera = next_camera(frame);
   scene.camera_motion = std::move(look.camera_motion);
   scene.shutter = shot.render.curve;
   scene.area_lights = std::move(look.lights.lamps);
@@ -244,7 +282,7 @@ void SceneStage::add_coloring(KeyHasher& key) const {
   if (heat.range)
     key.add(heat.range->x()).add(heat.range->y());
   else
-    key.add(run_.all_frames_key());
+    key.add("of used vertices").add(run_.all_frames_key());
 }
 
 HeatRange SceneStage::heat_range() const {
@@ -309,7 +347,7 @@ StageKey SceneStage::trace_key(int frame) const {
   const Look look = this->look(frame);
   add_look(key, look);
   add_tracing(key, look.camera_motion);
-  if (run_.shot().render.params.channels.has(PictureChannel::Motion)) add(key, camera(frame + 1));
+  if (run_.shot().render.params.channels.has(PictureChannel::Motion)) add(key, next_camera(frame));
   if (!coloring_key_.empty()) key.add(coloring_key_);
   return key.add(run_.surfaces_key(frame, skin_request(run_.shot().render))).key();
 }

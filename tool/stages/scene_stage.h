@@ -61,6 +61,9 @@ class SceneStage {
   void add_look(KeyHasher& key, const Look& look) const;
   void add_tracing(KeyHasher& key, const std::vector<Camera>& camera_motion) const;
   std::vector<Camera> camera_motion(int frame) const;
+  Camera next_camera(int frame) const;
+  void start_scenes();
+  void warn_far_from_origin() const;
 
   ShotRun& run_;
   MaterialTextures textures_;
@@ -77,9 +80,17 @@ class SceneStage {
 /// The camera of a shot at a frame. rest_bounds: of all bodies at rest, for CameraMode::Frame.
 Camera camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
 
-/// The cameras at the times of the shutter that ends at a frame, as Scene::camera_motion: empty if all are alike.
+/// The last frame in (after, until] at which the camera jumps, as keys of ease "constant" do; none: it moves or stands.
+std::optional<double> last_cut(const CameraSettings& settings, double after, double until);
+
+/// The cameras at the times of the shutter that ends at a frame, as Scene::camera_motion: empty if all are alike. Times
+/// before a cut count as the cut's.
 std::vector<Camera> camera_motion_at(const CameraSettings& settings, const RenderSettings& render, double frame,
                                      const Bounds& rest_bounds, double aspect);
+
+/// The camera of the frame after this one, for motion vectors. It stays where a cut lies between them: what the next
+/// shot shows has not moved there.
+Camera next_camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
 
 /// What a request for skinned surfaces must hold for the shot's motion blur.
 SkinRequest skin_request(const RenderSettings& settings);

@@ -107,13 +107,23 @@ TomlValue document_of(const SettingsSnapshot& snapshot) {
 
 }  // namespace
 
+namespace {
+
+/// Colours shape no body, so that its key leaves them out; pictures change with them.
+StageKey mesh_entry(const LoadedBody& loaded) {
+  if (loaded.surface.colors.empty()) return loaded.file_key;
+  return KeyHasher("painted mesh").add(loaded.file_key).add(loaded.surface.colors).key();
+}
+
+}  // namespace
+
 SettingsSnapshot snapshot(const ShotRun& run) {
   Shot with_paths = run.shot();
   SettingsSnapshot snapshot;
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     BodySettings& body = with_paths.bodies[b];
     body.mesh = absolute(body.mesh);
-    snapshot[std::string(kMeshPrefix) + body.mesh] = run.loaded(b).file_key;
+    snapshot[std::string(kMeshPrefix) + body.mesh] = mesh_entry(run.loaded(b));
     for (std::string* path : constraint_files(body, with_paths.glues)) {
       *path = absolute(*path);
       snapshot[std::string(kMeshPrefix) + *path] = checksum_of(*path);

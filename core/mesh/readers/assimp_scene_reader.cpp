@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <assimp/Importer.hpp>
@@ -45,6 +46,32 @@ bool is_finite(const std::vector<double>& numbers) {
 
 Error contradiction(const std::string& path, const std::string& problem) {
   return unusable_file(path, problem, "Export the scene again");
+}
+
+bool is_same(const Quaternion& a, const Quaternion& b) {
+  return a.coeffs() == b.coeffs();
+}
+
+template <typename T>
+bool is_same(const T& a, const T& b) {
+  return a == b;
+}
+
+/// Of two different values at one time the first holds until just before it. Exporters also repeat whole keys.
+template <typename T>
+void add_sample(Samples<T>& samples, double seconds, T value) {
+  std::vector<double>& times = samples.seconds;
+  if (!times.empty() && seconds == times.back()) {
+    if (is_same(samples.values.back(), value)) return;
+    const double before = std::nextafter(seconds, -std::numeric_limits<double>::infinity());
+    if (times.size() > 1 && times[times.size() - 2] >= before) {
+      samples.values.back() = std::move(value);  // the third of one time, or more
+      return;
+    }
+    times.back() = before;
+  }
+  times.push_back(seconds);
+  samples.values.push_back(std::move(value));
 }
 
 /// Puts our scene together; checks every index and number that it follows.
@@ -181,7 +208,7 @@ class SceneReader {
     to_.clips.push_back(std::move(clip));
   }
 
-  /// Keys that do not come after the one before them are left out: exporters repeat times. What they key is only for
+  /// Keys that come before the one before them are left out; two of one time are a step. What they key is only for
   /// messages.
   template <typename Key, typename Value, typename T>
   void read_keys(const Key* keys, unsigned count, double ticks, const std::string& what, const Value& value,
@@ -191,25 +218,35 @@ class SceneReader {
       if (!std::isfinite(seconds))
         throw contradiction(
             path_, fmt::format("in clip '{}', the time of key {} of the {} is not finite", clip.name, k, what));
-      if (!samples.empty() && seconds <= samples.seconds.back()) continue;
+      if (!samples.empty() && seconds < samples.seconds.back()) continue;
       T sample = value(keys[k]);
       if (!is_finite(sample))
         throw contradiction(path_, fmt::format("in clip '{}', the value of key {} of the {}, at {:g} s, is not finite",
                                                clip.name, k, what, seconds));
-      samples.seconds.push_back(seconds);
-      samples.values.push_back(std::move(sample));
+      add_sample(samples, seconds, std::move(sample));
       clip.seconds = std::max(clip.seconds, seconds);
     }
   }
 
-  /// A channel names a node, or (FBX) a mesh, with a number behind '*'.
-  void add_morphs(const aiMeshMorphAnim& channel, double ticks, SceneClip& clip) {
-    const std::string name = channel.mName.C_Str();
+  /// The meshes that a channel of morph weights moves. It names a node, or (FBX) a mesh, with a number behind '*'. A
+  /// mesh may have the name of another one's node, so that the names of meshes count only where no node has it.
+  std::vector<std::size_t> morphed_meshes(const std::string& name) const {
     const std::string mesh_name = name.substr(0, name.find('*'));
+    const auto node_name = [&](const SceneMesh& mesh) { return to_.nodes[static_cast<std::size_t>(mesh.node)].name; };
+    std::vector<std::size_t> of_node, of_mesh, of_numbered;
     for (std::size_t m = 0; m < to_.meshes.size(); ++m) {
       const SceneMesh& mesh = to_.meshes[m];
-      const std::string& node = to_.nodes[static_cast<std::size_t>(mesh.node)].name;
-      if (mesh.morphs.empty() || (node != name && mesh.name != mesh_name && node != mesh_name)) continue;
+      if (mesh.morphs.empty()) continue;
+      if (node_name(mesh) == name) of_node.push_back(m);
+      if (mesh.name == mesh_name) of_mesh.push_back(m);
+      if (node_name(mesh) == mesh_name) of_numbered.push_back(m);
+    }
+    return !of_node.empty() ? of_node : !of_mesh.empty() ? of_mesh : of_numbered;
+  }
+
+  void add_morphs(const aiMeshMorphAnim& channel, double ticks, SceneClip& clip) {
+    for (const std::size_t m : morphed_meshes(channel.mName.C_Str())) {
+      const SceneMesh& mesh = to_.meshes[m];
       MorphChannel out{static_cast<Index>(m), {}};
       const auto weights = [&](const aiMeshMorphKey& key) {
         std::vector<double> of_target(mesh.morphs.size(), 0.0);

@@ -6,8 +6,8 @@
 
 #include "core/mesh/box_tree.h"
 #include "core/mesh/disjoint_sets.h"
-#include "core/tetmesh/triangle_clusters.h"
-#include "core/tetmesh/winding_number.h"
+#include "core/mesh/triangle_clusters.h"
+#include "core/mesh/winding_number.h"
 
 namespace softreel {
 namespace {

@@ -68,6 +68,21 @@ TEST(FollowedNode, IsPlacedLikeTheBody) {
       kRoundOff);
 }
 
+TEST(SceneNodes, PoseOnlyThoseAboveTheWantedWithTheBitsOfTheWholeScene) {
+  SceneAnimation scene = turning_node();
+  const Affine aside{Mat3(Eigen::AngleAxisd(0.3, Vec3::UnitX())), Vec3(0.1, 0.7, -0.3)};
+  for (int k = 0; k < 5; ++k) scene.nodes.push_back({"other", k - 1, aside});
+  scene.nodes.push_back({"hand", 0, aside});
+  scene.nodes.push_back({"finger", 6, aside});
+  const SceneNodes nodes(scene, &scene.clips[0], {7});
+  EXPECT_EQ(nodes.numbers(), std::vector<Index>({0, 6, 7}));
+  for (const double seconds : {-1.0, 0.3, 2.0}) {
+    const ScenePose pose = pose_scene(scene, &scene.clips[0], seconds);
+    EXPECT_EQ(nodes.at(seconds), std::vector<Affine>({pose.nodes[0], pose.nodes[6], pose.nodes[7]}));
+  }
+  EXPECT_EQ(SceneNodes(scene, nullptr, {7}).at(0).back(), pose_scene(scene, nullptr, 0).nodes[7]);
+}
+
 TEST(FollowedNode, RefusesAReferenceWithoutExtent) {
   SceneAnimation scene = turning_node();
   scene.nodes[0].rest.linear.setZero();

@@ -212,6 +212,18 @@ TEST(RepairMesh, JoinsRimsThoughAnotherTriangleIsFarAway) {
     ASSERT_EQ(soup.joined[v], static_cast<Index>(v)) << "their distance is more than a quarter of their edges";
 }
 
+TEST(VertexNormals, AreOneAlongRimsThatRepairJoined) {
+  SurfaceMesh roof;
+  roof.positions = {{0, 1, 0}, {0, 1, 1}, {-1, 0, 0}, {1e-7, 1, 0}, {1e-7, 1, 1}, {1, 0, 0}};
+  roof.triangles = {{0, 2, 1}, {3, 4, 5}};
+  repair_mesh(roof);
+  ASSERT_EQ(roof.joined, std::vector<Index>({0, 1, 2, 0, 1, 5}));
+  const std::vector<Vec3> normals = vertex_normals(roof, roof.positions);
+  EXPECT_EQ(normals[3], normals[0]);
+  EXPECT_EQ(normals[4], normals[1]);
+  EXPECT_LT((normals[0].cwiseAbs() - Vec3::UnitY()).norm(), 1e-6) << normals[0].transpose();
+}
+
 /// Closed pieces all over a ball: each is nested in one of many.
 TEST(RepairMesh, TellsTheNestingOfAHundredThousandShells) {
   SurfaceMesh mesh = test::make_sphere(1000, 8, Vec3::Zero());

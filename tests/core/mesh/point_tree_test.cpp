@@ -1,5 +1,7 @@
 #include "core/mesh/point_tree.h"
 
+#include <algorithm>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -24,8 +26,30 @@ TEST(PointTree, FindsWhatBruteForceFinds) {
   }
 }
 
+TEST(PointTree, FindsTheNextOnesInOrder) {
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> coordinate(0, 6);
+  std::vector<Vec3> points(300);
+  for (Vec3& p : points) p = Vec3(coordinate(random), coordinate(random), coordinate(random));
+  const PointTree tree(points);
+  for (int query = 0; query < 50; ++query) {
+    const Vec3 q(coordinate(random), coordinate(random), coordinate(random));
+    std::vector<Index> order(points.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return (points[at(a)] - q).squaredNorm() < (points[at(b)] - q).squaredNorm();
+    });
+    for (const std::size_t count : {0U, 1U, 7U, 300U, 400U}) {
+      const std::vector<Index> expected(order.begin(),
+                                        order.begin() + static_cast<std::ptrdiff_t>(std::min(count, order.size())));
+      EXPECT_EQ(tree.nearest(q, count), expected);
+    }
+  }
+}
+
 TEST(PointTree, HasNoNearestOfNoPoints) {
   EXPECT_EQ(PointTree({}).nearest(Vec3::Zero()), -1);
+  EXPECT_TRUE(PointTree({}).nearest(Vec3::Zero(), 3).empty());
 }
 
 }  // namespace

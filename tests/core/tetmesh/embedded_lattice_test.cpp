@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <numbers>
+#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -116,6 +117,33 @@ TEST(EmbeddedLattice, KeepsFingersOfOneCellApart) {
   for (std::size_t v = 0; v < pieces.size(); ++v)
     EXPECT_EQ(pieces[v], static_cast<Index>(v) < first ? pieces[0] : 1 - pieces[0]);
   EXPECT_NEAR(filled_volume(mesh), 2 * 2 * 0.04 * 0.04, 1e-8);
+}
+
+/// Thousands of stones in a few cells: all pairs of their triangles or of their copies would take minutes.
+TEST(EmbeddedLattice, KeepsGravelOfFewCellsApart) {
+  constexpr Index kSide = 16;
+  SurfaceMesh gravel;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> shift(-0.2, 0.2);
+  std::vector<CarriedPoint> points;
+  for (Index k = 0; k < kSide * kSide * kSide; ++k) {
+    const Vec3 shifts(shift(random), shift(random), shift(random));
+    const Vec3 place = (Vec3(k % kSide, k / kSide % kSide, k / kSide / kSide) + shifts) / kSide;
+    const auto first = static_cast<Index>(gravel.positions.size());
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+      gravel.positions.push_back(place + 0.4 / kSide * corner);
+      // Carried by number or found by place, it is in its own stone.
+      points.push_back({gravel.positions.back(), k % 2 == 0 ? static_cast<Index>(gravel.positions.size()) - 1 : -1});
+    }
+    for (const Triangle& t : {Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{1, 2, 3}})
+      gravel.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  const LatticeFrame frame{Vec3(0.013, 0.017, 0.011), 1.2};
+  const EmbeddedLattice cover = cover_with_lattice(gravel, find_parts(gravel), frame, points, Threads(1));
+  EXPECT_LT(cover.cut_cells, 50);
+  EXPECT_EQ(test::count_pieces(cover.mesh), kSide * kSide * kSide);
+  const std::vector<Index> pieces = vertex_pieces(cover.mesh);
+  for (std::size_t v = 0; v < pieces.size(); ++v) ASSERT_EQ(pieces[v], pieces[v / 4 * 4]) << v;
 }
 
 TEST(EmbeddedLattice, JoinsFingersOnlyWhereTheyAreJoined) {

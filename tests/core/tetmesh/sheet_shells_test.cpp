@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/winding_number.h"
+#include "core/mesh/winding_number.h"
 #include "tests/support/surfaces.h"
 
 namespace softreel {

@@ -76,6 +76,24 @@ TEST(HeatLegend, CoversTheHighestSixthOfThePictureAtMost) {
     for (int x = 0; x < 1280; ++x) ASSERT_EQ(code_at(image, x, y), Vec3f::Constant(200)) << x << ", " << y;
 }
 
+TEST(HeatLegend, ALabelThatWouldRunIntoTheOneBeforeIsLeftOut) {
+  DisplayImage one{320, 180, {}};
+  one.pixels.assign(std::size_t{3} * 320 * 180, 200);
+  DisplayImage two = one;
+  HeatLegend legend{"Strain, %", {{0.5, "888"}}};
+  draw_heat_legend(legend, one);
+  legend.ticks.push_back({0.54, "111"});
+  draw_heat_legend(legend, two);
+  int columns = 0;
+  for (int x = 0; x < 320; ++x) {
+    bool differs = false;
+    for (int y = 0; y < 180; ++y) differs = differs || code_at(one, x, y) != code_at(two, x, y);
+    columns += differs ? 1 : 0;
+  }
+  EXPECT_GE(columns, 1) << "the mark itself stays";
+  EXPECT_LE(columns, 3);
+}
+
 TEST(HeatCode, RunsFromDarkToBrightWithoutTurningBack) {
   const auto brightness = [](float x) { return heat_color(x).dot(Vec3f(0.2126f, 0.7152f, 0.0722f)); };
   float before = -1;

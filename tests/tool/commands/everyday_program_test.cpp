@@ -29,6 +29,12 @@ TEST(Explain, SaysWhatAFieldIsAndWhereItsValueComesFrom) {
   EXPECT_EQ(report["unit"], "paths a pixel");
 }
 
+TEST(Options, ThatMayBeRepeatedLeaveTheShotAlone) {
+  const std::string shot = shot_folder("options") + "/shot.toml";
+  const Outcome checked = run("softreel check --set render.samples=3 --set render.width=64 " + shot);
+  EXPECT_EQ(checked.status, 0) << checked.err;
+}
+
 TEST(Explain, SaysWhatAQualityChanges) {
   const std::string shot = "'" SOFTREEL_SOURCE_DIR "/presets/first_pull.toml'";
   const auto value = [&](const std::string& field, const std::string& options) {

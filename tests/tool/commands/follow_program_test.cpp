@@ -210,6 +210,20 @@ TEST_F(Follow, SaysWhatTheFileHasInsteadOfWhatIsMissing) {
   expect_parts(independent.err, {"pin[1].grab = true", "shot.independent"});
 }
 
+TEST_F(Follow, RefusesNamesOfSeveralNodesAndSaysWhereAClipHoldsStill) {
+  start("names", "");
+  write_strip(folder_);
+  std::string text = read_text(folder_ + "/strip.gltf");
+  text.replace(text.find("\"upper\""), 7, "\"lower\"");
+  write_text(folder_ + "/twins.gltf", text);
+  expect_parts(refusal(pin_on_top("file = \"twins.gltf\", mesh = \"body_skin\"")),
+               {"pin[1].follow", "a joint of mesh 'body_skin", "'lower'", "several nodes", "Rename"});
+  write_text(folder_ + "/shot.toml", ball_shot(pin_on_top("file = \"jaw.gltf\", node = \"jaw\", start = -200")));
+  const Outcome still = run(fmt::format("softreel check {}/shot.toml", folder_));
+  EXPECT_EQ(still.status, 0) << still.err;
+  expect_parts(still.err, {"jaw.gltf", "clip 'open'", "start = 1 would begin that at frame 1"});
+}
+
 TEST_F(Follow, SaysWhatIsWrongWithWeights) {
   start("bad_weights", "");
   write_text(folder_ + "/short.txt", "1\n0\n");

@@ -52,6 +52,15 @@ TEST(GivenTets, CarryTheSurfaceBesideThem) {
   EXPECT_NE(report_of(folder)["tets"], tets["tets"]);
 }
 
+TEST(GivenTets, CarryTheSurfaceWhereverVerticesOfNoFaceAre) {
+  const std::string folder = folder_with_tets("given_loose");
+  const std::string sets = fmt::format("--set body.tetrahedra={}/ball.msh", folder);
+  write_text(folder + "/sphere.obj", sphere_obj(12) + "v 9 9 9\n");
+  const Outcome outcome =
+      run(fmt::format("softreel simulate {0}/shot.toml --output {0}/out --quiet --frames 1 {1}", folder, sets));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 TEST(GivenTets, AreABodyOfTheirOwnInTheirNodesOrder) {
   const std::string folder = folder_with_tets("given_alone");
   const Outcome outcome = run(fmt::format(

@@ -69,6 +69,20 @@ TEST(Render, HasTheSameBitsTwiceAndWithAnyNumberOfThreads) {
   expect_equal_folders(folder + "/out1", folder + "/out4");
 }
 
+TEST(Render, SaysThatFarFromTheOriginContactsGetLost) {
+  const std::string folder = shot_folder("far");
+  const auto said = [&](double x) {
+    const Outcome outcome = run(fmt::format(
+        "softreel render {0}/shot.toml --output {0}/out --frames 1 --set 'body.translate=[{1}, 0, 0]'", folder, x));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::size_t at = outcome.err.find("from the origin");
+    EXPECT_EQ(outcome.err.find("from the origin", at == std::string::npos ? at : at + 1), std::string::npos) << "twice";
+    return at != std::string::npos;
+  };
+  EXPECT_TRUE(said(3000));
+  EXPECT_FALSE(said(300));
+}
+
 TEST(Render, ADamagedStateIsSaidAndSimulatedAgainFromTheOneBefore) {
   const std::string folder = shot_folder("damage");
   render(folder, folder + "/out", "", "simulate");

@@ -83,6 +83,23 @@ TEST_F(Surface, AnEditedTextureFileMakesNewPicturesAndNothingElse) {
   EXPECT_EQ(json::parse(render(dressed() + texture("copy.png")).out)["pictures"]["kept"], 4);
 }
 
+TEST_F(Surface, StatusNamesTheMeshWhoseColoursChanged) {
+  start("repainted");
+  const std::string sets = dressed() + set("material.soft.vertex_colors", "true");
+  ASSERT_EQ(render(sets).status, 0);
+  std::string text = read_text(folder_ + "/dressed.obj");
+  text.replace(text.find("0.5 0.5\n"), 7, "0.9 0.5");
+  write_text(folder_ + "/dressed.obj", text);
+  const json status =
+      json::parse(run(fmt::format("softreel status {0}/shot.toml --output {0}/out --json {1}", folder_, sets)).out);
+  for (const json& stage : status["stages"]) {
+    if (stage["stage"] != "pictures") continue;
+    EXPECT_EQ(stage["stale"], json({1, 2, 3, 4}));
+    ASSERT_EQ(stage["because"].size(), 1u) << stage;
+    EXPECT_NE(stage["because"][0]["field"].get<std::string>().find("dressed.obj"), std::string::npos) << stage;
+  }
+}
+
 TEST_F(Surface, AColourOnTheCommandLineTakesThePlaceOfTheTexture) {
   start("override");
   ASSERT_EQ(render(dressed() + set("material.soft.base_color", "[1, 0, 0]"), "plain").status, 0);

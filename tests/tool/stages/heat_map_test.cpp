@@ -71,8 +71,20 @@ TEST(UpperEnd, LeavesSinglePeaksOut) {
   std::vector<double> values(1000, 2.0);
   values[17] = 1e9;
   values[18] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(upper_end(values), 2);
-  EXPECT_EQ(upper_end({}), 0);
+  SurfaceMesh surface;
+  surface.positions.resize(values.size());
+  for (Index v = 0; v < 1000; v += 2) surface.triangles.push_back({v, v + 1, 0});
+  EXPECT_EQ(upper_end(values, surface), 2);
+  EXPECT_EQ(upper_end({}, {}), 0);
+}
+
+TEST(UpperEnd, DoesNotSeeVerticesThatNoTriangleUses) {
+  SurfaceMesh surface;
+  surface.positions.resize(100);
+  surface.triangles = {{0, 1, 2}};
+  std::vector<double> values(100, 7.0);
+  values[0] = values[1] = values[2] = 1;
+  EXPECT_EQ(upper_end(values, surface), 1);
 }
 
 TEST(HeatLegendOf, SaysTheQuantityInAUnitOfItsSize) {

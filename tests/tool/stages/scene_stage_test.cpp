@@ -94,6 +94,48 @@ TEST(CameraMotionAt, IsTheCameraAtTheTimesOfTheShutter) {
   EXPECT_TRUE(camera_motion_at(settings, render, 30, {}, 1).empty()) << "it stands";
 }
 
+/// Stands until it cuts to another place at frame 50, from where it moves by 1 m a frame.
+CameraSettings camera_with_cut() {
+  CameraSettings settings = framing(0, 0, 1);
+  settings.mode = CameraMode::Place;
+  settings.position.keys = {
+      {1, Vec3(0, 0, 4), Ease::Constant}, {50, Vec3(10, 0, 4), Ease::Linear}, {60, Vec3(20, 0, 4), Ease::Linear}};
+  settings.target.keys = {{1, Vec3(0, 0, 0), Ease::Constant}, {50, Vec3(9, 0, 0), Ease::Constant}};
+  return settings;
+}
+
+TEST(CameraMotionAt, DoesNotFlyThroughACut) {
+  const CameraSettings settings = camera_with_cut();
+  RenderSettings render;
+  render.blur_segments = 2;
+  render.shutter = 0.5;
+  EXPECT_TRUE(camera_motion_at(settings, render, 50, {}, 1).empty()) << "what it was before the cut is not seen";
+  const std::vector<Camera> cameras = camera_motion_at(settings, render, 50.25, {}, 1);
+  ASSERT_EQ(cameras.size(), 3u);
+  EXPECT_EQ(cameras[0], camera_at(settings, 50, {}, 1));
+  EXPECT_EQ(cameras[1], cameras[0]);
+  EXPECT_EQ(cameras[2], camera_at(settings, 50.25, {}, 1));
+  EXPECT_EQ(camera_motion_at(settings, render, 51, {}, 1)[0], camera_at(settings, 50.5, {}, 1));
+}
+
+TEST(NextCameraAt, StaysBeforeACut) {
+  const CameraSettings settings = camera_with_cut();
+  EXPECT_EQ(next_camera_at(settings, 49, {}, 1), camera_at(settings, 49, {}, 1));
+  EXPECT_EQ(next_camera_at(settings, 50, {}, 1), camera_at(settings, 51, {}, 1));
+}
+
+TEST(LastCut, IsOfEveryTrackThatThePictureShows) {
+  CameraSettings settings = framing(0, 0, 1);
+  settings.focus_distance.keys = {{1, 2.0, Ease::Constant}, {7, 3.0, Ease::Constant}};
+  EXPECT_FALSE(last_cut(settings, 0, 90)) << "all is sharp without an aperture";
+  settings.f_number = 2;
+  EXPECT_EQ(last_cut(settings, 6, 7), 7);
+  EXPECT_FALSE(last_cut(settings, 7, 90));
+  settings.focal_length_mm.keys = {{1, 50.0, Ease::Constant}, {9, 50.0, Ease::Constant}, {11, 35.0, Ease::Constant}};
+  EXPECT_FALSE(last_cut(settings, 8, 10)) << "a key that changes nothing";
+  EXPECT_EQ(last_cut(settings, 0, 90), 11);
+}
+
 TEST(PositionsBetween, LieOnTheLinesBetweenSubSteps) {
   const std::vector<Vec3> a{Vec3(0, 0, 0)}, b{Vec3(2, 0, 0)}, c{Vec3(2, 6, 0)};
   const std::vector<const std::vector<Vec3>*> steps{&a, &b, &c};

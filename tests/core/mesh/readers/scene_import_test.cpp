@@ -78,6 +78,52 @@ TEST(SceneImport, MorphsByTheWeightsOfTheClip) {
   EXPECT_LT((vertices.at(0.5, last)[0] - Vec3(0, 1.25, 0)).norm(), kSingle);
 }
 
+/// The text of a scene file with one part replaced wherever it stands.
+std::string with(std::string text, const std::string& part, const std::string& other) {
+  EXPECT_NE(text.find(part), std::string::npos);
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + other.size()))
+    text.replace(at, part.size(), other);
+  return text;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(SceneImport, TwoKeysOfOneTimeAreAStep) {
+  const TemporaryFolder folder;
+  testing::GltfBuffer buffer;
+  const int times = buffer.add_floats({0, 1, 1, 1, 2}, "SCALAR");
+  const int places = buffer.add_floats({0, 0, 0, 0, 0, 0, 3, 0, 0, 5, 0, 0, 5, 0, 0}, "VEC3");
+  const std::string path = buffer.write(folder.path(""), "step",
+                                        fmt::format(R"("scenes": [{{ "nodes": [0] }}], "nodes": [{{ "name": "box" }}],
+"animations": [{{ "name": "jump", "channels": [{{ "sampler": 0, "target": {{ "node": 0, "path": "translation" }} }}],
+                "samplers": [{{ "input": {}, "output": {} }}] }}])",
+                                                    times, places));
+  const SceneAnimation scene = import_scene(path, Log{});
+  const auto x = [&](double seconds) { return pose_scene(scene, &scene.clips.at(0), seconds).nodes[0].offset.x(); };
+  EXPECT_EQ(x(0.999), 0);
+  EXPECT_EQ(x(1), 5) << "the last of them holds from its time on";
+  EXPECT_EQ(x(1.001), 5);
+}
+
+TEST(SceneImport, MorphWeightsOfANodeDoNotMoveAMeshOfItsName) {
+  const TemporaryFolder folder;
+  std::string text = text_of(testing::write_morph(folder.path("")));
+  const std::string mesh = text.substr(text.find("{ \"name\": \"face_mesh\""));
+  const std::string other = with(mesh.substr(0, mesh.find("}] }] }") + 7), "face_mesh", "face");
+  text = with(text, "\"meshes\": [", "\"meshes\": [" + other + ", ");
+  text = with(text, "{ \"name\": \"face\", \"mesh\": 0 }",
+              "{ \"name\": \"face\", \"mesh\": 1 }, { \"name\": \"mask\", \"mesh\": 0 }");
+  const std::string path = folder.write("morph.gltf", with(text, "\"nodes\": [0]", "\"nodes\": [0, 1]"));
+  const SceneAnimation scene = import_scene(path, Log{});
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  ASSERT_EQ(scene.clips.at(0).morphs.size(), 1u);
+  const SceneMesh& moved = scene.meshes[static_cast<std::size_t>(scene.clips[0].morphs[0].mesh)];
+  EXPECT_EQ(scene.nodes[static_cast<std::size_t>(moved.node)].name, "face");
+}
+
 TEST(SceneImport, PosesTellTimesApartAndContentsTellFilesApart) {
   const TemporaryFolder folder;
   const SceneAnimation scene = import_scene(testing::write_strip(folder.path("")), Log{});

@@ -1,4 +1,4 @@
-#include "core/tetmesh/ordered_triangles.h"
+#include "core/mesh/ordered_triangles.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "core/tetmesh/winding_number.h"
+#include "core/mesh/winding_number.h"
 
 #include <random>
 
@@ -14,6 +14,29 @@ namespace {
 Vec3 random_point(std::mt19937& random, double half_size) {
   std::uniform_real_distribution<double> coordinate(-half_size, half_size);
   return {coordinate(random), coordinate(random), coordinate(random)};
+}
+
+TEST(WindingNumber, IsTheSameQuickly) {
+  std::mt19937 random(9);
+  SurfaceMesh mesh = test::make_sphere(1, 6, Vec3::Zero());
+  for (int layer = 0; layer < 3; ++layer) test::append(mesh, test::make_sphere(0.5, 3, Vec3(0.1, 0.2, 0)));
+  std::erase_if(mesh.triangles, [&](const Triangle& t) { return mesh.positions[at(t[0])].y() < -0.3; });
+  for (int t = 0; t < 50; ++t) {  // long ones, all through each other
+    for (int k = 0; k < 3; ++k) mesh.positions.push_back(random_point(random, 2));
+    const auto end = static_cast<Index>(mesh.positions.size());
+    mesh.triangles.push_back({end - 3, end - 2, end - 1});
+  }
+  const WindingNumber winding(mesh.positions, mesh.triangles);
+  std::vector<Vec3> points = mesh.positions;  // where angles are half a turn either way
+  for (const auto& [a, b, c] : mesh.triangles) {
+    points.push_back(0.5 * (mesh.positions[at(a)] + mesh.positions[at(b)]));
+    points.push_back(0.5 * points.back() + 0.5 * mesh.positions[at(c)]);
+  }
+  for (int i = 0; i < 3000; ++i) points.push_back(random_point(random, 1.5));
+  for (const Vec3& p : points) {
+    ASSERT_NEAR(winding.quick(p), winding(p), 1e-9) << p.transpose();
+    ASSERT_EQ(std::abs(winding.quick(p)) > 0.5, std::abs(winding(p)) > 0.5) << p.transpose();
+  }
 }
 
 TEST(WindingNumber, IsOneInsideAndZeroOutside) {

@@ -1,4 +1,4 @@
-#include "core/tetmesh/triangle_clusters.h"
+#include "core/mesh/triangle_clusters.h"
 
 namespace softreel {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/tetmesh/ordered_triangles.h"
+#include "core/mesh/ordered_triangles.h"
 
 namespace softreel {
 
