@@ -17,7 +17,8 @@ CLI::Validator length(const std::string& what = "length");
 /// Accepts finite numbers from 0 on, for the same reasons.
 CLI::Validator size_limit();
 
-/// What follows an option's value is the shot, also where the option may be repeated. Called when all options are there.
+/// What follows an option's value is the shot, also where the option may be repeated. Called when all options are
+/// there.
 void take_one_value_each(CLI::App& app);
 
 /// No option of a subcommand, but for completion, takes an empty value: one that a script's unset variable left there

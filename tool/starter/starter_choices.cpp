@@ -81,6 +81,34 @@ void choose_size(const SurfaceMesh& mesh, StarterBody& body) {
   body.size_reason = fmt::format("In the file it is {:.4g} high; lamps and camera suit about a metre.", height);
 }
 
+/// Area of a horizontal section of a closed surface: what lies above faces up as much more as the section is large.
+double section_area(const SurfaceMesh& surface, double height) {
+  double area = 0;
+  for (const Triangle& triangle : surface.triangles) {
+    const auto corner = [&](std::size_t k) -> const Vec3& {
+      return surface.positions[static_cast<std::size_t>(triangle[k])];
+    };
+    const Vec3 &a = corner(0), &b = corner(1), &c = corner(2);
+    if ((a + b + c).y() > 3 * height) area += 0.5 * (b - a).cross(c - a).y();
+  }
+  return area;
+}
+
+/// The thinnest section of the lower part over the mean one, at most 1: what the legs are to the body that they carry.
+double leg_share(const SurfaceMesh& surface) {
+  constexpr int kSections = 20;
+  const Bounds box = used_bounds(surface);
+  double sum = 0, thinnest = 1e300;
+  for (int k = 1; k < kSections; ++k) {
+    const double share = static_cast<double>(k) / kSections;
+    const double area = section_area(surface, box.min.y() + share * box.size().y());
+    sum += area;
+    if (share < 0.45) thinnest = std::min(thinnest, area);
+  }
+  const double mean = sum / (kSections - 1);
+  return mean > 0 && thinnest > 0 ? std::min(thinnest / mean, 1.0) : 1.0;  // 1 of what is open
+}
+
 /// Places the body over the ground: `fit` stands it there; what is held at one end has room to hang.
 void choose_place(const RunContext& context, StarterBody& body) {
   body.loaded = load_body(body.settings, context);
@@ -93,6 +121,7 @@ void choose_place(const RunContext& context, StarterBody& body) {
     body.loaded = load_body(body.settings, context);
   }
   body.length = used_bounds(body.loaded.surface).size().maxCoeff();
+  body.leg_share = leg_share(body.loaded.surface);
 }
 
 /// A way to fill the body, in the order in which they are tried.

@@ -37,6 +37,7 @@ struct StarterBody {
   StarterSelection held, pulled;
   double length = 0;       ///< m, the largest edge of its box
   double slenderness = 1;  ///< length over height, of one that lies
+  double leg_share = 1;    ///< of one that stands: its thinnest section below the middle over the mean one, at most 1
   double volume = 0;       ///< m^3, of its tetrahedra
   std::size_t tets = 0;
   int pieces = 0, loose_pieces = 0;  ///< parts of the tetrahedra; those that nothing holds

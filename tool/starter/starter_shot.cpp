@@ -28,6 +28,8 @@ constexpr double kEarth = 9.81;      ///< m/s^2
 /// held at one end.
 constexpr double kStandingLoad = 0.01, kHangingSag = 0.04;
 constexpr double kPullStiffness = 1.5;  ///< of the pull, over that of a bar of the body's volume and length
+constexpr double kLegsBear = 2;         ///< legs of half the mean section carry a body as well as its own width would
+constexpr double kRestOfPull = 0.05;    ///< of it, once the body is let go
 
 /// A name that needs no quotes in TOML and can begin the name of a file.
 std::string body_name(const std::string& mesh) {
@@ -85,7 +87,8 @@ double bearable_weight(const StarterBody& body, double youngs_modulus, double de
   const double unit = youngs_modulus / (density * body.length);
   // A beam that is held at one end sags by 1.5 rho g L^4 / (E h^2).
   const double slender = body.slenderness;
-  const double most = body.stands ? kStandingLoad * unit : kHangingSag * unit / (1.5 * slender * slender);
+  const double most = body.stands ? kStandingLoad * std::min(1.0, kLegsBear * body.leg_share) * unit
+                                  : kHangingSag * unit / (1.5 * slender * slender);
   return std::min(kEarth, std::stod(two_digits(most)));
 }
 
@@ -102,7 +105,7 @@ class StarterText {
     load_material();
     TomlValue document = assemble();
     rebase_paths(document, "", folder_);
-    add_remarks(document);
+    add_remarks();
     StarterShot shot{opening() + commented_document(document, remarks_), name_, facts()};
     check(shot.text);
     return shot;
@@ -169,7 +172,8 @@ class StarterText {
     return text;
   }
 
-  /// Held at one end, pulled at the other, and let go.
+  /// Held at one end, pulled at the other, and let go but for a faint spring to where it stood: what has thin legs gets
+  /// up again after the recoil.
   std::string own_motion() const {
     const auto select = [](const StarterSelection& one) {
       TomlValue value = *selection_codec().print(one.select);
@@ -188,10 +192,13 @@ class StarterText {
     };
     std::string text = fmt::format("\n[[body.{0}.pin]]\nselect = {1}\n\n[[body.{0}.pull]]\nselect = {2}\n", name_,
                                    select(body_.held), select(body_.pulled));
-    text += fmt::format("stiffness = {}\n", std::stod(two_digits(kPullStiffness * modulus_ * body_.volume / (L * L))));
+    const double stiffness = kPullStiffness * modulus_ * body_.volume / (L * L);
+    text +=
+        fmt::format("stiffness = [ {{ frame = 42, value = {}, ease = \"constant\" }}, {{ frame = 43, value = {} }} ]\n",
+                    std::stod(two_digits(stiffness)), std::stod(two_digits(kRestOfPull * stiffness)));
     text += fmt::format(
         "keys = [ {{ frame = 1 }}, {{ frame = 12, translate = {} }}, {{ frame = 26, translate = {} }}, "
-        "{{ frame = 42, translate = {} }} ]\nactive = [1, 42]\n",
+        "{{ frame = 42, translate = {}, ease = \"constant\" }}, {{ frame = 43 }} ]\n",
         body_.stands ? move(0.04, -0.08, 0.03) : move(0, 0.05, 0),
         body_.stands ? move(0.12, 0.35, 0.05) : move(0, 0.28, 0.08),
         body_.stands ? move(-0.25, 0.35, 0.08) : move(0, 0.15, -0.2));
@@ -259,7 +266,7 @@ class StarterText {
     }
   }
 
-  void add_remarks(const TomlValue& document) {
+  void add_remarks() {
     remarks_[at("up")] = body_.up_reason;
     remarks_[at(body_.settings.fit > 0 ? "fit" : "scale")] = body_.size_reason;
     remarks_[at("material")] = "The library in presets/materials has others: softreel new --material NAME.";
@@ -288,8 +295,9 @@ class StarterText {
     if (motion_from_preset_) return;
     remarks_[at("pin[0]")] = fmt::format("Takes {}.", body_.held.words) + other_groups();
     remarks_[at("pull[0]")] = fmt::format("Takes {}.", body_.pulled.words);
-    remarks_[at("pull[0].stiffness")] = "Twice as much brings the points nearer to where the keys want them.";
-    if (document.find("body") != nullptr) remarks_[at("pull[0].active")] = "Then it is let go.";
+    remarks_[at("pull[0].stiffness")] =
+        "Twice as much brings the points nearer to where the keys want them. After frame 42 they are let go, but for a "
+        "faint spring to where they were.";
   }
 
   std::string other_groups() const {

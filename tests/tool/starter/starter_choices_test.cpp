@@ -76,6 +76,33 @@ TEST_F(StarterChoices, SomethingTallStandsOnItsBaseAndIsAMetreHigh) {
   EXPECT_EQ(body.loose_pieces, 0);
 }
 
+/// A block of 1 x 0.4 x 1 m on four legs of 0.6 m, whose sections are a share of the block's.
+std::string table(double share) {
+  const double w = std::sqrt(share) / 2;
+  std::string text;
+  int first = 1;
+  const auto add = [&](const Vec3& low, const Vec3& high) {
+    for (int k = 0; k < 8; ++k)
+      text += fmt::format("v {} {} {}\n", (k & 1) != 0 ? high.x() : low.x(), (k & 2) != 0 ? high.y() : low.y(),
+                          (k & 4) != 0 ? high.z() : low.z());
+    for (const auto& f : {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+      text += fmt::format("f {} {} {} {}\n", first + f[0], first + f[1], first + f[2], first + f[3]);
+    first += 8;
+  };
+  add(Vec3(0, 0.6, 0), Vec3(1, 1, 1));
+  for (const double x : {0.0, 1 - w})
+    for (const double z : {0.0, 1 - w}) add(Vec3(x, 0, z), Vec3(x + w, 0.7, z + w));
+  return text;
+}
+
+TEST_F(StarterChoices, ThinLegsAreFound) {
+  write("tall.obj", box(2, 9, 3));
+  EXPECT_NEAR(choose("tall.obj").leg_share, 1, 1e-9);
+  write("table.obj", table(0.25));
+  const double legs = choose("table.obj").leg_share;
+  EXPECT_NEAR(legs, 0.25 / (0.6 * 0.25 + 0.4), 0.06);
+}
+
 TEST_F(StarterChoices, SomethingLongLiesAndIsHeldAtOneEndAboveTheGround) {
   write("long.obj", box(1, 0.8, 10));
   const StarterBody body = choose("long.obj");
