@@ -264,6 +264,7 @@ std::vector<PlainLevel> coarsen_repeatedly(PlainLevel finest, LatticeFrame frame
             ? coarsen_with_few_copies(fine.nodes, fine.pattern, frame, params)
             : coarsen(fine.nodes, fine.pattern, frame, {params.dropped_weight, params.stiffness_contrast});
     if (!pays(*found, fine)) {
+      if (found->staying > 0) continue;  // the next lattice takes more of those that stay
       if (rescue == Rescue::Leave || !is_dear(fine.pattern, levels.front().pattern, params)) break;
       found = coarsen_further(fine, frame, params);
       if (!found) break;

@@ -31,7 +31,7 @@ struct EmbeddedLattice {
   TetMesh mesh;         ///< with fill, and carriers per carried point: -1 for one outside all elements
   Index cut_cells = 0;  ///< lattice tetrahedra that the surface passes
   Index copies = 0;     ///< elements beyond the first of their lattice tetrahedron
-  Index branches = 0;   ///< copies that share a face with another of the same lattice tetrahedron, where limbs side by
+  Index branches = 0;   ///< pairs, each copy with the next at a face of one lattice tetrahedron, where limbs side by
                         ///< side in it join: there alone the boundary is no manifold, for three elements meet at a face
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/base/check.h"
 
@@ -31,7 +30,6 @@ SweptGround::SweptGround(const MotionMesh& mesh) {
   const std::size_t row = row_length(positions);
   CHECK(positions.size() % row == 0u);
   CHECK(mesh.triangles.size() == 2 * (row - 1) * (positions.size() / row - 1));
-  CHECK(positions.size() / row <= std::numeric_limits<std::uint16_t>::max());
   cells_ = row - 1;
   const Vec3f width = positions[cells_] - positions[0];
   half_width_ = 0.5f * width.norm();
@@ -53,7 +51,7 @@ SweptGround::SweptGround(const MotionMesh& mesh) {
   for (std::size_t place = 0, r = bend_; place <= kPlaces; ++place) {
     const float along_and_up = 2 * radius_ * static_cast<float>(place) / kPlaces;
     while (r + 1 < wall_ && (profile_[r + 1] - profile_[bend_]).sum() <= along_and_up) ++r;
-    row_at_[place] = static_cast<std::uint16_t>(r);
+    row_at_[place] = static_cast<std::uint32_t>(r);
   }
 }
 

@@ -68,7 +68,7 @@ class SweptGround {
   static constexpr std::size_t kPlaces = 128;
   /// Row of the bend by along + up from its beginning, which grows evenly enough along an arc; in steps of 2 radii over
   /// kPlaces.
-  std::array<std::uint16_t, kPlaces + 1> row_at_{};
+  std::array<std::uint32_t, kPlaces + 1> row_at_{};
 };
 
 }  // namespace softreel

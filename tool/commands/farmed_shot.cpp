@@ -142,7 +142,7 @@ void FarmedShot::continue_record(const FarmOptions& options, ShotOptions one) {
   if (one.cache_limit_gb < 0) one.cache_limit_gb = record_->shot.cache_limit_gb;
   const FarmShot before = site_;
   kept_sets_ = sets_beside(one.sets, record_->shot.sets);
-  if (kept_sets_.empty()) {
+  if (kept_sets_.empty() && one.sets.empty()) {
     open(one);
     find_site(one);
   } else {

@@ -121,7 +121,7 @@ class Playblast {
   }
   StageKey file_key(int frame) const {
     const OutputSettings& output = run_.shot().output;
-    KeyHasher key("preview 7");
+    KeyHasher key("preview 8");
     key.add(scenes_.preview_key(frame)).add(output.view).add(output.exposure).add(fast_).add(wireframe_);
     if (output.view == ViewTransform::Raw) key.add("linear");
     gizmos_.add_key(key, frame);

@@ -14,9 +14,15 @@ std::string color_text(const Vec3f& v) {
   return fmt::format("({}, {}, {})", v.x(), v.y(), v.z());
 }
 
-/// Where the layer finds the file: relative to its folder.
+/// Where the layer finds the file: relative to its folder, as text, which is how it is joined to the layer's path, or
+/// whole where that leads elsewhere, for the folder lies behind a link.
 std::string asset(const std::string& path, const std::string& folder) {
-  std::string relative = std::filesystem::proximate(path, folder.empty() ? "." : folder).generic_string();
+  namespace fs = std::filesystem;
+  const fs::path base = fs::absolute(folder.empty() ? "." : folder).lexically_normal(),
+                 file = fs::absolute(path).lexically_normal(), text = file.lexically_relative(base);
+  std::error_code none;
+  const bool leads_there = fs::equivalent(base / text, file, none);
+  std::string relative = (leads_there || !fs::exists(file, none) ? text : file).generic_string();
   if (!relative.starts_with('.') && !relative.starts_with('/')) relative.insert(0, "./");
   const char* const quote = relative.find('@') == std::string::npos ? "@" : "@@@";
   return quote + relative + quote;

@@ -17,7 +17,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same surface would give other tetrahedra or another embedding.
-constexpr const char* kFillVersion = "tetrahedra 9";
+constexpr const char* kFillVersion = "tetrahedra 10";
 
 std::vector<std::uint8_t> pack(const FilledBody& filled) {
   ByteWriter out;
@@ -115,7 +115,8 @@ StageKey filled_key(const BodySettings& body, const LoadedBody& loaded) {
   KeyHasher key(kFillVersion);
   key.add(loaded.key);
   if (!loaded.surface.joined.empty()) key.add("joined normals");  // points outside are embedded along their normals
-  if (loaded.given) return key.add(loaded.given->nodes).add(loaded.given->tets).add(body.optimize).key();
+  if (loaded.given)
+    return key.add(loaded.given->nodes).add(loaded.given->tets).add(loaded.given->fill).add(body.optimize).key();
   return key.add(body.edge)
       .add(body.tets)
       .add(budget_of(body, loaded))

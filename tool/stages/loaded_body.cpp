@@ -70,7 +70,7 @@ void say_ignored(const BodySettings& body, const Log& log) {
 }
 
 StageKey given_key(const TetMesh& mesh) {
-  return KeyHasher("given tetrahedra 1").add(mesh.nodes).add(mesh.tets).key();
+  return KeyHasher("given tetrahedra 2").add(mesh.nodes).add(mesh.tets).add(mesh.fill).key();
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kManifestFormat = 2;
+/// 2 had no journal: one that reads it alone would lose what was not folded in yet.
+constexpr int kManifestFormat = 3, kFormatWithoutJournal = 2;
 
 /// Of a fixed length, and used once.
 std::string random_text() {
@@ -126,7 +127,7 @@ void Manifest::take(const std::string& manifest, const std::string& journal) {
 bool Manifest::take_manifest(const std::string& text) {
   try {
     const Json json = Json::parse(text);
-    if (const int format = json.at("format").get<int>(); format != kManifestFormat) {
+    if (const int format = json.at("format").get<int>(); format != kManifestFormat && format != kFormatWithoutJournal) {
       log_.warn(fmt::format("{}: is of format {}, this softreel reads format {}; its files are made again.", path_,
                             format, kManifestFormat));
       return false;
@@ -186,7 +187,9 @@ void Manifest::locked(const std::function<void()>& work) {
   try {
     work();
   } catch (...) {
-    revision_.clear();  // contents_ may hold what could not be written
+    // contents_ may hold what could not be written: all is read again, not the journal's end alone.
+    revision_.clear();
+    journal_.clear();
     throw;
   }
 }

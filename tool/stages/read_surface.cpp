@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Raised whenever the same file would give another surface, or the bytes are laid out differently.
-constexpr const char* kReadVersion = "read surface 2";
+constexpr const char* kReadVersion = "read surface 3";
 
 constexpr std::uintmax_t kLeastBytes = 1 << 20;
 

@@ -353,7 +353,7 @@ StageKey SceneStage::trace_key(int frame) const {
 }
 
 StageKey SceneStage::preview_key(int frame) const {
-  KeyHasher key("preview 5");
+  KeyHasher key("preview 6");
   add_look(key, look(frame));
   if (!coloring_key_.empty()) key.add(coloring_key_);
   return key.add(run_.surfaces_key(frame, still_request(run_.shot().render))).key();

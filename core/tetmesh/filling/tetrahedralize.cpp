@@ -92,8 +92,8 @@ StuffedMesh cover_surface(const Job& job, double edge, const Vec3& shift) {
       "where parts of the body lie in one",
       job.name, cover.mesh.tets.size(), cover.cut_cells, cover.copies));
   if (cover.branches > 0)
-    job.log.info(fmt::format("body '{}': at {} of the copies limbs side by side in one lattice tetrahedron join",
-                             job.name, cover.branches));
+    job.log.info(fmt::format("body '{}': at {} places limbs side by side in one lattice tetrahedron join", job.name,
+                             cover.branches));
   return {std::move(cover.mesh), {}, {}};
 }
 

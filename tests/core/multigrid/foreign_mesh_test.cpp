@@ -122,6 +122,22 @@ TEST(ForeignMesh, HasFewNodesLeftWhereTetrahedraOfVeryDifferentSizesAreMixed) {
   EXPECT_LE(foreign_iterations(mesh, 1.0 / 96), 1.5 * foreign_iterations(test_support::make_bar(6), 1.0 / 96));
 }
 
+TEST(ForeignMesh, HasFewNodesLeftWhereASmallFineBodyIsJoinedToALargeCoarseOne) {
+  // The small one stops shrinking long before the large one begins to: no level in between, but no end either.
+  for (int k = 0; k < 8; ++k) {
+    TetMesh mesh = make_box({3 + k % 3, 3, 4}, 0.01);
+    const Vec3 offset(0.0037 * k, 0.0053 * k, 0.0071 * k);
+    for (Vec3& x : mesh.nodes) x += offset;
+    const TetMesh coarse = make_box({16, 16, 16}, 0.32);
+    mesh.spacings.assign(mesh.nodes.size(), 0.01);
+    const auto first = static_cast<Index>(mesh.nodes.size());
+    for (const Vec3& x : coarse.nodes) mesh.nodes.emplace_back(x + Vec3(0.2, 0, 0));
+    mesh.spacings.resize(mesh.nodes.size(), 0.32);
+    for (const Tet& t : coarse.tets) mesh.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
+    EXPECT_LE(hierarchy_of(mesh).levels.back().pattern.rows(), static_cast<Index>(mesh.nodes.size()) / 10) << k;
+  }
+}
+
 /// Thin plate of n x n cells of 1 cm, one layer of tetrahedra.
 TetMesh plate(Index n, double thickness) {
   return without_lattice(testing::kuhn_bar({n, n, 1}, Vec3(0.01 * n, 0.01 * n, thickness)));

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "core/base/error.h"
+
 namespace softreel {
 namespace {
 namespace fs = std::filesystem;
@@ -160,6 +162,22 @@ TEST_F(ManifestFiles, TheEndOfAnOlderJournalIsNoNews) {
   write_text(journal_, journal);
   enter(other, "c", "1");
   EXPECT_EQ(seen(), "b:1 c:1 ");
+}
+
+TEST_F(ManifestFiles, WhatCouldNotBeWrittenIsNotKnownLaterEither) {
+  Manifest manifest = open(), other = open();
+  fill(manifest);
+  enter(manifest, "a", "1");
+  const std::string journal = text_of(journal_);
+  std::filesystem::remove(journal_);
+  std::filesystem::create_directory(journal_);
+  EXPECT_THROW(enter(manifest, "b", "1"), Error);
+  std::filesystem::remove(journal_);
+  write_text(journal_, journal);
+  enter(other, "c", "1");
+  enter(manifest, "d", "1");
+  manifest.fold();
+  EXPECT_EQ(seen(), "a:1 c:1 d:1 ");
 }
 
 TEST_F(ManifestFiles, OfAnOlderProgramAreReadAndWrittenAnew) {
