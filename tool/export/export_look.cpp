@@ -22,13 +22,12 @@ bool is_other(const std::string& path) {
   return picture_kind(path) == PictureKind::Other;
 }
 
-constexpr std::array<Loss, 8> kLosses{{
+constexpr std::array<Loss, 7> kLosses{{
     {"textures that are neither PNG nor JPEG", "usda",
      [](const MaterialSettings& m) {
        return is_other(m.textures.base_color) || is_other(m.textures.roughness) || is_other(m.textures.normal);
      }},
     {"bump_texture", "", [](const MaterialSettings& m) { return !m.textures.bump.empty(); }},
-    {"vertex_colors", "", [](const MaterialSettings& m) { return m.textures.vertex_colors; }},
     {"sheen", "glb", [](const MaterialSettings& m) { return m.appearance.sheen > 0; }},
     {"absorption", "glb",
      [](const MaterialSettings& m) { return m.appearance.transmission > 0 && !m.appearance.absorption.isZero(0); }},

@@ -7,6 +7,7 @@
 
 #include "core/base/check.h"
 #include "tool/export/body_samples.h"
+#include "tool/export/export_colors.h"
 #include "tool/stages/appearance_key.h"
 #include "tool/stages/byte_hasher.h"
 #include "tool/stages/simulate_key.h"
@@ -29,14 +30,16 @@ void add(KeyHasher& key, const Camera& c) {
   key.add(c.focus_distance);
 }
 
-/// With the bytes of its textures.
+/// With the bytes of its textures, and the colours that it shows: no key of a mesh has them.
 StageKey look_key(ExportBody body) {
-  KeyHasher key("export look 1");
+  KeyHasher key("export look 2");
   key.add(body.material);
   add(key, body.appearance);
   TextureSettings& t = body.textures;
   key.add(t.wrap).add(t.scale.x()).add(t.scale.y()).add(t.offset.x()).add(t.offset.y()).add(t.normal_strength);
   for (const std::string* path : t.paths()) key.add(*path).add(path->empty() ? StageKey() : hash_file(*path));
+  key.add(shows_vertex_colors(body));
+  if (shows_vertex_colors(body)) key.add(body.mesh->colors);
   return key.key();
 }
 
@@ -67,8 +70,11 @@ ExportSeries::ExportSeries(const ExportFormat& format, const ExportSettings& set
       run_(run),
       outputs_(outputs),
       camera_(export_camera(run)) {
-  if (!format.needs_look) return;
-  for (const std::size_t body : bodies_) look_keys_.push_back(look_key(export_body(settings, run, body, times_.first)));
+  for (const std::size_t body : bodies_) {
+    if (format.needs_look) look_keys_.push_back(look_key(export_body(settings, run, body, times_.first)));
+    if (format.has_colors)
+      look_keys_.push_back(KeyHasher("export colours 1").add(run.loaded(body).file_mesh.colors).key());
+  }
 }
 
 ExportSeries::ExportSeries(ExportSeries&&) noexcept = default;

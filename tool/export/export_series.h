@@ -81,7 +81,7 @@ class ExportSeries {
   ShotRun& run_;
   Outputs& outputs_;
   std::function<Camera(double frame)> camera_;
-  std::vector<StageKey> look_keys_;  ///< per body; none if the format has no looks
+  std::vector<StageKey> look_keys_;  ///< per body: its look, its mesh's colours; what the format has of them
   StageKey whole_key_;               ///< empty until it is needed
   std::optional<bool> wants_all_;    ///< of a single file
   std::unique_ptr<Growing> growing_;

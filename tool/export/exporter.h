@@ -124,6 +124,7 @@ struct ExportFormat {
   int version = 1;  ///< of its bytes: raised whenever the same samples make other ones
 
   bool has_normals = false;    ///< can hold them
+  bool has_colors = false;     ///< keeps those of the mesh's vertices, shown or not
   bool has_seconds = false;    ///< knows how fast it plays
   bool has_transform = false;  ///< in object space, it places the body in a world with unit and axes
   bool has_units = true;       ///< false: the format itself fixes metres and Y up

@@ -9,6 +9,7 @@
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "tool/export/export_colors.h"
 #include "tool/export/float_values.h"
 #include "tool/export/gltf_look.h"
 #include "tool/export/scratch_file.h"
@@ -158,7 +159,8 @@ class GlbFile : public ExportWriter {
     const double vertex_bytes = 12.0 * (target_.settings.normals ? 2 : 1) * static_cast<double>(vertices());
     double pictures = 0;
     for (const GltfLook::Picture& picture : look_.pictures()) pictures += static_cast<double>(picture.bytes.size());
-    const double bytes = pictures + corners + 8.0 * static_cast<double>(split_.textures.size()) +
+    const double color_bytes = shows_vertex_colors(body()) ? 12.0 * static_cast<double>(vertices()) : 0;
+    const double bytes = pictures + corners + color_bytes + 8.0 * static_cast<double>(split_.textures.size()) +
                          vertex_bytes * (samples + 1) + 4 * samples * (samples + 1) + 1024 * samples + 65536;
     if (bytes <= std::numeric_limits<std::uint32_t>::max()) return;
     throw input_error(
@@ -183,12 +185,24 @@ class GlbFile : public ExportWriter {
       rest_normals_ = to_vertices("the mesh at rest", vertex_normals(*body().mesh, rest));
       attributes_["NORMAL"] = buffer_.add(rest_normals_, "VEC3", 3, kVertexData);
     }
+    if (shows_vertex_colors(body())) write_colors();
     for (const GltfLook::Picture& picture : look_.pictures())
       picture_views_.push_back(buffer_.add_picture(picture.bytes));
     if (split_.textures.empty()) return;
     std::vector<float> textures;
     for (const Vec2f& at : split_.textures) textures.insert(textures.end(), {at.x(), 1 - at.y()});
     attributes_["TEXCOORD_0"] = buffer_.add(textures, "VEC2", 2, kVertexData);
+  }
+
+  /// Linear, white with the share of glass as the base colour would be: glTF multiplies the two.
+  void write_colors() {
+    const std::vector<Vec3f> colors = linear_colors(*body().mesh);
+    const float glass = glass_share(body().appearance);
+    std::vector<float> values;
+    values.reserve(3 * vertices());
+    for (const Index vertex : split_.sources)
+      for (const float value : colors[static_cast<std::size_t>(vertex)]) values.push_back((1 - glass) * value + glass);
+    attributes_["COLOR_0"] = buffer_.add(values, "VEC3", 3, kVertexData);
   }
 
   /// Values of the file's vertices, with those of the duplicates behind.
@@ -281,7 +295,7 @@ ExportFormat glb_format() {
   format.name = "glb";
   format.about = "binary glTF, a file a body: samples as morph targets with their animation; material, textures";
   format.file_per = FilePer::Body;
-  format.version = 2;
+  format.version = 3;
   format.has_normals = true;
   format.has_seconds = true;
   format.has_transform = true;

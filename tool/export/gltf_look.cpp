@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "render/image/image_io.h"
+#include "tool/export/export_colors.h"
 #include "tool/export/export_look.h"
 #include "tool/stages/atomic_file.h"
 
@@ -102,10 +103,15 @@ double least_side(const ExportBody& body) {
 
 }  // namespace
 
+float glass_share(const Appearance& look) {
+  return (1 - look.metallic) * look.transmission;
+}
+
 GltfLook::GltfLook(const ExportBody& body, bool has_coordinates) {
   const Appearance& look = body.appearance;
-  const float glass = (1 - look.metallic) * look.transmission;
-  const Vec3f base = (1 - glass) * look.base_color + glass * Vec3f::Ones();
+  const float glass = glass_share(look);
+  const Vec3f color = shows_vertex_colors(body) ? Vec3f(Vec3f::Ones()) : look.base_color;
+  const Vec3f base = (1 - glass) * color + glass * Vec3f::Ones();
   material_ = {{"name", body.material},
                {"pbrMetallicRoughness",
                 {{"baseColorFactor", {base.x(), base.y(), base.z(), 1}},

@@ -13,9 +13,13 @@
 
 namespace softreel {
 
+/// The share of light that a look lets through, in [0, 1].
+float glass_share(const Appearance& look);
+
 /// Extensions are used where the look has what they say, and named in extensionsUsed. Glass is a volume, whose sides
 /// are not both drawn: the thickness that readers without ray tracing bend light by is the shortest side of the body's
-/// box. As glTF tints glass by the base colour, which we do not, that goes to white with the share of glass.
+/// box. As glTF tints glass by the base colour, which we do not, that goes to white with the share of glass. It is
+/// white where the vertices have the colours, which it would multiply.
 class GltfLook {
  public:
   struct Picture {

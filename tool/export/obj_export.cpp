@@ -7,6 +7,7 @@
 #include <fmt/compile.h>
 
 #include "core/base/check.h"
+#include "tool/export/export_colors.h"
 #include "tool/export/whole_file.h"
 
 namespace softreel {
@@ -25,6 +26,17 @@ std::vector<std::string> group_words(const std::vector<VertexGroup>& groups) {
     words.push_back(std::move(word));
   }
   return words;
+}
+
+void write_vertices(const SurfaceMesh& mesh, std::span<const Vec3> positions, fmt::memory_buffer& text) {
+  const auto out = std::back_inserter(text);
+  const std::vector<Vec3f> colors = displayed_colors(mesh);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const Vec3& p = positions[v];
+    fmt::format_to(out, FMT_COMPILE("v {} {} {}"), p.x(), p.y(), p.z());
+    if (!colors.empty()) fmt::format_to(out, FMT_COMPILE(" {} {} {}"), colors[v].x(), colors[v].y(), colors[v].z());
+    text.push_back('\n');
+  }
 }
 
 /// A corner is VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or VERTEX/TEXTURE/NORMAL.
@@ -60,7 +72,7 @@ std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, std::span<const Ve
   fmt::memory_buffer text;
   text.reserve(64 * (positions.size() + normals.size()) + 16 * mesh.polygons.corner_vertices.size());
   const auto out = std::back_inserter(text);
-  for (const Vec3& p : positions) fmt::format_to(out, FMT_COMPILE("v {} {} {}\n"), p.x(), p.y(), p.z());
+  write_vertices(mesh, positions, text);
   for (const Vec2& t : mesh.texture_coordinates) fmt::format_to(out, FMT_COMPILE("vt {} {}\n"), t.x(), t.y());
   for (const Vec3& n : normals) fmt::format_to(out, FMT_COMPILE("vn {} {} {}\n"), n.x(), n.y(), n.z());
   write_polygons(mesh, !normals.empty(), text);
@@ -70,9 +82,10 @@ std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, std::span<const Ve
 ExportFormat obj_format() {
   ExportFormat format;
   format.name = "obj";
-  format.about = "Wavefront OBJ, a file a frame, with polygons, texture coordinates and groups; exact";
-  format.version = 4;
+  format.about = "Wavefront OBJ, a file a frame, with polygons, texture coordinates, colours and groups; exact";
+  format.version = 5;
   format.has_normals = true;
+  format.has_colors = true;
   format.make = whole_file_writer(encode_obj);
   return format;
 }

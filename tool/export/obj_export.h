@@ -13,7 +13,8 @@ namespace softreel {
 ///
 /// All vertices (used or not), texture coordinates, polygons and the group of each polygon are written; numbers are the
 /// shortest decimals that read back as the same doubles. Vertex groups that no polygon names cannot be said in OBJ: PLY
-/// keeps them.
+/// keeps them. Where the mesh has colours, r, g and b stand behind each vertex's x, y and z, in [0, 1] on the sRGB
+/// curve: a widespread extension.
 std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, std::span<const Vec3> positions,
                                      std::span<const Vec3> normals = {});
 

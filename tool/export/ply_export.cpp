@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "core/base/check.h"
 #include "core/mesh/readers/ply_header.h"
+#include "tool/export/export_colors.h"
 #include "tool/export/whole_file.h"
 
 namespace softreel {
@@ -20,7 +22,12 @@ static_assert(std::endian::native == std::endian::little, "values are written as
 class PlyEncoder {
  public:
   PlyEncoder(const SurfaceMesh& mesh, std::span<const Vec3> positions, std::span<const Vec3> normals)
-      : mesh_(mesh), positions_(positions), normals_(normals), vertex_textures_(find_vertex_textures()) {
+      : mesh_(mesh),
+        positions_(positions),
+        normals_(normals),
+        colors_(displayed_colors(mesh)),
+        has_byte_colors_(are_bytes(colors_)),
+        vertex_textures_(find_vertex_textures()) {
     has_face_textures_ = !mesh.polygons.corner_textures.empty() && !vertex_textures_;
     const std::vector<Index>& offsets = mesh.polygons.offsets;
     for (std::size_t p = 0; p + 1 < offsets.size(); ++p)
@@ -64,6 +71,9 @@ class PlyEncoder {
         positions_.size());
     if (!normals_.empty()) header += "property double nx\nproperty double ny\nproperty double nz\n";
     if (vertex_textures_) header += "property double s\nproperty double t\n";
+    if (!colors_.empty())
+      header += fmt::format("property {0} red\nproperty {0} green\nproperty {0} blue\n",
+                            has_byte_colors_ ? "uchar" : "float");
     for (const VertexGroup& group : mesh_.groups)
       header += fmt::format("property uchar {}{}\n", detail::kPlyGroupPrefix, detail::encode_ply_name(group.name));
     header += fmt::format("element face {}\nproperty list {} int vertex_indices\n", mesh_.polygons.size(),
@@ -77,7 +87,8 @@ class PlyEncoder {
 
   std::size_t vertex_bytes() const {
     const std::size_t doubles = 3 + (normals_.empty() ? 0 : 3) + (vertex_textures_ ? 2 : 0);
-    return positions_.size() * (doubles * sizeof(double) + mesh_.groups.size());
+    const std::size_t channel = has_byte_colors_ ? 1 : sizeof(float), colors = colors_.empty() ? 0 : 3 * channel;
+    return positions_.size() * (doubles * sizeof(double) + colors + mesh_.groups.size());
   }
 
   /// At most: a face without all of its texture coordinates has none.
@@ -98,6 +109,7 @@ class PlyEncoder {
       for (int k = 0; k < 3 && !normals_.empty(); ++k) put(normals_[v][k]);
       if (vertex_textures_)
         for (int k = 0; k < 2; ++k) put((*vertex_textures_)[v][k]);
+      if (!colors_.empty()) put_color(colors_[v]);
       for (const std::vector<std::uint8_t>& member : members) put(member[v]);
     }
   }
@@ -118,6 +130,14 @@ class PlyEncoder {
         put(mesh_.texture_coordinates[static_cast<std::size_t>(polygons.corner_textures[c])][k]);
   }
 
+  void put_color(const Vec3f& color) {
+    for (const float value : color)
+      if (has_byte_colors_)
+        put(static_cast<std::uint8_t>(std::lround(255 * value)));
+      else
+        put(value);
+  }
+
   void put_count(Index count, Index most) {
     if (most < 256)
       put(static_cast<std::uint8_t>(count));
@@ -133,6 +153,8 @@ class PlyEncoder {
 
   const SurfaceMesh& mesh_;
   std::span<const Vec3> positions_, normals_;
+  std::vector<Vec3f> colors_;  ///< as a screen shows them; empty if the mesh has none
+  bool has_byte_colors_ = false;
   std::optional<std::vector<Vec2>> vertex_textures_;
   bool has_face_textures_ = false;
   Index most_corners_ = 0;
@@ -152,9 +174,10 @@ std::vector<std::uint8_t> encode_ply(const SurfaceMesh& mesh, std::span<const Ve
 ExportFormat ply_format() {
   ExportFormat format;
   format.name = "ply";
-  format.about = "binary PLY, a file a frame, with polygons, texture coordinates and groups; exact";
-  format.version = 4;
+  format.about = "binary PLY, a file a frame, with polygons, texture coordinates, colours and groups; exact";
+  format.version = 5;
   format.has_normals = true;
+  format.has_colors = true;
   format.make = whole_file_writer(encode_ply);
   return format;
 }

@@ -13,7 +13,8 @@ namespace softreel {
 /// none.
 ///
 /// vertex: double x, y, z (double, so that nothing is rounded); double nx, ny, nz with normals; double s, t where each
-/// vertex has one texture coordinate; uchar group_NAME per vertex group (names as in core/mesh/readers/ply_reader.h).
+/// vertex has one texture coordinate; red, green, blue on the sRGB curve where the mesh has colours, uchar where these
+/// say them without loss, else float; uchar group_NAME per vertex group (names as in core/mesh/readers/ply_reader.h).
 /// face: vertex_indices; where texture coordinates differ between the corners of a vertex, the list texcoord of u and v
 /// per corner instead of s and t.
 std::vector<std::uint8_t> encode_ply(const SurfaceMesh& mesh, std::span<const Vec3> positions,

@@ -10,6 +10,7 @@
 #include "core/base/check.h"
 #include "render/scene/camera_frame.h"
 #include "tool/export/body_samples.h"
+#include "tool/export/export_colors.h"
 #include "tool/export/float_values.h"
 #include "tool/export/scratch_file.h"
 #include "tool/export/usda_look.h"
@@ -118,6 +119,7 @@ class UsdaFile : public ExportWriter {
     write("        rel material:binding = </{}/Looks/{}>\n", root_name(), look);
     if (target_.settings.normals) write_samples("normal3f[] normals", texts.normals);
     write_samples("point3f[] points", texts.points);
+    if (shows_vertex_colors(body)) write_colors(*body.mesh);
     write("        custom string softreel:name = {}\n", usda_quoted(body.name));
     if (target_.settings.space == ExportSpace::Object)
       write("        matrix4d xformOp:transform = {}\n        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n",
@@ -125,6 +127,14 @@ class UsdaFile : public ExportWriter {
     const std::string groups = usda_groups(*body.mesh, "        ");
     target_.sink({reinterpret_cast<const std::uint8_t*>(groups.data()), groups.size()});
     write("    }}\n\n");
+  }
+
+  /// Linear, which displayColor is.
+  void write_colors(const SurfaceMesh& mesh) {
+    std::vector<float> values;
+    for (const Vec3f& color : linear_colors(mesh)) values.insert(values.end(), color.begin(), color.end());
+    write("        color3f[] primvars:displayColor = {} (\n            interpolation = \"vertex\"\n        )\n",
+          usda_vectors(values, 3));
   }
 
   /// An attribute of the camera: a value where it stays, else one at each sample. `text` makes that of one.
@@ -191,7 +201,7 @@ ExportFormat usda_format() {
   format.about =
       "USD text, a file of the whole shot: meshes with time samples, materials with textures, camera; float32";
   format.file_per = FilePer::Shot;
-  format.version = 2;
+  format.version = 3;
   format.has_normals = true;
   format.has_seconds = true;
   format.has_transform = true;

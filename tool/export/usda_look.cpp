@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "tool/export/export_colors.h"
 #include "tool/export/export_look.h"
 #include "tool/export/usda_text.h"
 
@@ -52,6 +53,7 @@ class LookWriter {
 
   std::string text() {
     write_surface();
+    if (shows_vertex_colors(body_)) write_vertex_colors();
     if (!pictures_.empty()) write_coordinates();
     for (const Picture& picture : pictures_) write_picture(picture);
     return std::move(text_);
@@ -86,7 +88,10 @@ class LookWriter {
     begin("surface", "UsdPreviewSurface");
     input("float", "clearcoat", fmt::to_string(a.coat), a.coat == 0);
     input("float", "clearcoatRoughness", fmt::to_string(a.coat_roughness), a.coat == 0);
-    input("color3f", "diffuseColor", color_text(a.base_color));
+    if (shows_vertex_colors(body_))
+      line("color3f inputs:diffuseColor.connect = <{}/vertex_colors.outputs:result>", path_);
+    else
+      input("color3f", "diffuseColor", color_text(a.base_color));
     input("color3f", "emissiveColor", color_text(a.emission), a.emission.isZero(0));
     input("float", "ior", fmt::to_string(ior), ior == 1.5f);
     input("float", "metallic", fmt::to_string(a.metallic));
@@ -94,6 +99,13 @@ class LookWriter {
     input("float", "opacity", fmt::to_string(opacity), opacity == 1);
     input("float", "roughness", fmt::to_string(a.roughness));
     line("token outputs:surface");
+    end();
+  }
+
+  void write_vertex_colors() {
+    begin("vertex_colors", "UsdPrimvarReader_float3");
+    line("string inputs:varname = \"displayColor\"");
+    line("float3 outputs:result");
     end();
   }
 

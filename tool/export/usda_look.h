@@ -10,6 +10,7 @@ namespace softreel {
 /// parent: path of the prim that holds the material, `name` its name there; folder: of the layer, from which the paths
 /// of pictures are told. Glass is opacity with its index; the strength of reflections is an index as well, as
 /// UsdPreviewSurface has no other word for it beside metals. Textures are left out where the mesh has no coordinates.
+/// Colours of vertices are read from primvars:displayColor of the mesh.
 std::string usda_look(const ExportBody& body, const std::string& name, const std::string& parent,
                       const std::string& folder);
 

@@ -16,6 +16,7 @@ namespace {
 const Vec3f kPinColor(1.0f, 0.25f, 0.6f), kPullColor(0.15f, 0.65f, 1.0f), kRegionColor(0.35f, 0.85f, 0.35f);
 constexpr float kPointDiameter = 6, kTargetDiameter = 14;
 constexpr double kCube = 0.022;     ///< edge of the cubes that get one dot, share of the diagonal of the body's box
+constexpr std::size_t kDots = 64;   ///< of a pin or a pull: more of them hide a face; larger cubes then
 constexpr std::size_t kLines = 24;  ///< of a pull: more of them hide the body
 
 /// A body at the frame.
@@ -30,9 +31,8 @@ void add_dots(GizmoMarks& marks, const Points& points, const std::vector<Index>&
 }
 
 /// The first point in each cube of a grid.
-std::vector<Index> thinned(const std::vector<Index>& selected, const SurfaceMesh& surface) {
+std::vector<Index> thinned(const std::vector<Index>& selected, const SurfaceMesh& surface, double cube) {
   const Bounds bounds = used_bounds(surface);
-  const double cube = kCube * bounds.diagonal();
   std::set<std::array<std::int64_t, 3>> taken;
   std::vector<Index> kept;
   for (const Index p : selected) {
@@ -41,6 +41,18 @@ std::vector<Index> thinned(const std::vector<Index>& selected, const SurfaceMesh
     for (std::size_t k = 0; k < 3; ++k) cell[k] = std::llround(std::floor(place[static_cast<Eigen::Index>(k)]));
     if (taken.insert(cell).second) kept.push_back(p);
   }
+  return kept;
+}
+
+std::vector<Index> thinned(const std::vector<Index>& selected, const SurfaceMesh& surface) {
+  return thinned(selected, surface, kCube * used_bounds(surface).diagonal());
+}
+
+/// At most kDots of them.
+std::vector<Index> few_of(const std::vector<Index>& selected, const SurfaceMesh& surface) {
+  double cube = kCube * used_bounds(surface).diagonal();
+  std::vector<Index> kept = thinned(selected, surface, cube);
+  while (kept.size() > kDots) kept = thinned(kept, surface, cube *= 1.25);
   return kept;
 }
 
@@ -81,8 +93,8 @@ Gizmos::Gizmos(const ShotRun& run, const GizmoKinds& kinds) : run_(run), kinds_(
   for (std::size_t b = 0; b < run.body_count(); ++b) {
     const SurfaceMesh& surface = run.loaded(b).surface;
     BodyMarks body{resolve_constraints(run.shot(), run.settings(b), run.loaded(b), Log{}), {}, {}, {}};
-    for (const Pin& pin : body.constraints.pins) body.pin_dots.push_back(thinned(pin.points, surface));
-    for (const Pull& pull : body.constraints.pulls) body.pull_dots.push_back(thinned(pull.points, surface));
+    for (const Pin& pin : body.constraints.pins) body.pin_dots.push_back(few_of(pin.points, surface));
+    for (const Pull& pull : body.constraints.pulls) body.pull_dots.push_back(few_of(pull.points, surface));
     body.region_dots = thinned(points_of_regions(run.settings(b), run.loaded(b)), surface);
     bodies_.push_back(std::move(body));
   }
@@ -112,7 +124,7 @@ GizmoMarks Gizmos::at(int frame, const std::vector<SkinnedBody>& bodies,
 }
 
 void Gizmos::add_key(KeyHasher& key, int frame) const {
-  key.add("gizmos 1").add(kinds_.pins).add(kinds_.pulls).add(kinds_.regions);
+  key.add("gizmos 2").add(kinds_.pins).add(kinds_.pulls).add(kinds_.regions);
   for (const BodyMarks& body : bodies_) {
     key.add(constraints_key(body.constraints, frame));
     if (kinds_.regions) key.add(body.region_dots);

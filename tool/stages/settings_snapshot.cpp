@@ -146,10 +146,34 @@ SettingsSnapshot snapshot(const ShotRun& run) {
   return snapshot;
 }
 
+namespace {
+
+/// What a snapshot knows of the file that a field names; null if the field names none.
+const StageKey* content_of(const TomlValue* field, const SettingsSnapshot& snapshot) {
+  if (field == nullptr || field->text() == nullptr) return nullptr;
+  auto found = snapshot.find(std::string(kMeshPrefix) + *field->text());
+  if (found == snapshot.end()) found = snapshot.find(*field->text());
+  return found == snapshot.end() || found->first == kShotEntry ? nullptr : &found->second;
+}
+
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+}  // namespace
+
 std::vector<FieldChange> find_changes(const SettingsSnapshot& before, const SettingsSnapshot& after) {
   std::vector<FieldChange> changes;
   const TomlValue old_document = document_of(before), new_document = document_of(after);
   Comparison comparison([&](const Steps& steps, const TomlValue* was, const TomlValue* is) {
+    if (const StageKey* old = content_of(was, before), *now = content_of(is, after); old != nullptr && now != nullptr) {
+      if (*old == *now) return;  // the file lies elsewhere, which changes nothing
+      if (file_name(*was->text()) == file_name(*is->text())) {
+        const bool is_mesh = after.contains(std::string(kMeshPrefix) + *is->text());
+        changes.push_back({"content of " + *is->text(), is_mesh, *old, *now, std::nullopt});
+        return;
+      }
+    }
     changes.push_back({path_of(steps), false, was ? to_short_text(*was) : "", is ? to_short_text(*is) : "",
                        replaced(new_document, steps, was)});
   });

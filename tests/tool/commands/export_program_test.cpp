@@ -293,6 +293,33 @@ TEST_F(ExportProgram, WarnsOfWhatALookLosesAndWritesAgainWhereItChanged) {
   EXPECT_NE(read_glb(bytes("ball.ball.glb")).header.find("emissiveStrength"), std::string::npos);
 }
 
+TEST_F(ExportProgram, WritesAgainWhatHasTheColoursOfVerticesWhereTheyChanged) {
+  const std::string plain = read_text(folder_ + "/sphere.obj");
+  const auto paint = [&](const std::string& color) {
+    std::istringstream lines(plain);
+    std::string text;
+    for (std::string line; std::getline(lines, line);) text += line + (line.starts_with("v ") ? color : "") + "\n";
+    write_text(folder_ + "/sphere.obj", text);
+  };
+  const std::string all = "--format obj,ply,glb,usda --set material.soft.vertex_colors=true";
+  paint(" 1 0 0");
+  const Outcome red = export_shot(all);
+  ASSERT_EQ(red.status, 0) << red.err;
+  EXPECT_EQ(red.err.find("left out"), std::string::npos) << red.err;
+  EXPECT_EQ(written_and_kept(red), std::pair(10, 0)) << "four frames of obj and ply, two files of all";
+  EXPECT_EQ(written_and_kept(export_shot(all)), std::pair(0, 10));
+  paint(" 0 0 1");
+  EXPECT_EQ(written_and_kept(export_shot(all)), std::pair(10, 0));
+  const std::vector<float> glb = read_glb(bytes("ball.ball.glb")).colors;
+  ASSERT_GE(glb.size(), 3U);
+  EXPECT_EQ(std::vector<float>(glb.begin(), glb.begin() + 3), std::vector<float>({0, 0, 1}));
+  const std::vector<double> obj = obj_values(file("ball.ball.0004.obj"), "v");
+  EXPECT_EQ(std::vector<double>(obj.begin() + 3, obj.begin() + 6), std::vector<double>({0, 0, 1}));
+  require_export("--format glb");
+  paint(" 0 1 0");
+  EXPECT_EQ(written_and_kept(export_shot("--format glb")), std::pair(0, 1)) << "it does not show them";
+}
+
 TEST(ExportHelp, NamesEveryFormatWithItsLine) {
   const Outcome help = run("softreel export --help");
   for (const char* line : {"obj: Wavefront", "ply: binary", "pc2: PC2", "mdd: MDD", "glb: binary glTF", "usda: USD"})

@@ -72,6 +72,21 @@ TEST_F(Status, NamesTheFieldThatMadeFramesStaleWithOldAndNewValue) {
         << reason["field"];
 }
 
+TEST_F(Status, NamesTheContentOfAMeshAlsoWhereItsFolderWasMoved) {
+  start("before_moving");
+  render();
+  const std::string moved = folder_ + "_and_after";
+  std::filesystem::remove_all(moved);
+  std::filesystem::rename(folder_, moved);
+  folder_ = moved;
+  EXPECT_EQ(stage("pictures")["done"], json({1, 2, 3, 4})) << "what moves as a whole stays done";
+  write_text(folder_ + "/sphere.obj", sphere_obj(7));
+  const json pictures = stage("pictures");
+  EXPECT_EQ(pictures["stale"], json({1, 2, 3, 4}));
+  ASSERT_EQ(pictures["because"].size(), 1U);
+  EXPECT_NE(pictures["because"][0]["field"].get<std::string>().find("content of " + folder_), std::string::npos);
+}
+
 TEST_F(Status, KnowsFramesOfSeveralVersionsApart) {
   start("versions");
   render();

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/srgb.h"
 #include "tests/core/mesh/mesh_files.h"
 #include "tool/export/exporter.h"
 #include "tool/export/formats.h"
@@ -20,6 +21,17 @@ inline SurfaceMesh patchwork() {
       "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 9 9 9\nv 1 2 0\nv 0 2 0.1\n"
       "vt 0 0\nvt 0.1 0\nvt 0.1 1\nvt 0 1\nvt 0.7 0.3\n"
       "g left\nf 1/1 2/2 5/3 4/4\ng right\nf 2/5 3/2 6/3 5/1\ng\nf 4/1 5/2 6/3 8/4 9/5\nf 4/1 2/3 1/2\n");
+}
+
+/// One colour a vertex, each of bytes.
+inline void paint_with_bytes(SurfaceMesh& mesh) {
+  mesh.colors.clear();
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const auto byte = [&](std::size_t step) {
+      return srgb_decode(static_cast<float>(static_cast<double>((37 + step * v) % 256) / 255));
+    };
+    mesh.colors.emplace_back(byte(11), byte(29), byte(53));
+  }
 }
 
 /// One file of a format: bodies of meshes and samples, taken one after the other.

@@ -1,5 +1,6 @@
 // Looks in GLB: extensions of Khronos and embedded pictures.
 #include <cmath>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -121,6 +122,50 @@ TEST(GltfLook, PicturesLieInTheFile) {
   expect_near(transform.at("scale"), {2, 3});
   expect_near(transform.at("offset"), {0.25, -2.5});  // at v = 0, below: 1 - 0.5 there, 1 * 3 - 2.5 here
   EXPECT_EQ(file.header.at("extensionsUsed"), Json::array({"KHR_texture_transform"}));
+}
+
+testing::GlbScene painted(const SurfaceMesh& mesh, const Appearance& look, bool shows_colors) {
+  testing::FormatRun run("glb");
+  run.add_body("cloth", mesh);
+  run.target().bodies[0].appearance = look;
+  run.target().bodies[0].textures.vertex_colors = shows_colors;
+  run.append(1, mesh.positions);
+  return testing::read_glb(run.finish());
+}
+
+TEST(GltfLook, ColoursOfVerticesAreLinearForEveryVertexAndStandAlone) {
+  SurfaceMesh mesh = testing::patchwork();
+  testing::paint_with_bytes(mesh);
+  mesh.colors[0] = Vec3f(-1, 2, std::numeric_limits<float>::quiet_NaN());
+  const testing::GlbScene scene = painted(mesh, {}, true);
+  EXPECT_EQ(scene.base_color, (std::array<double, 4>{1, 1, 1, 1})) << "it multiplies them";
+  ASSERT_EQ(scene.colors.size(), scene.positions.size());
+  ASSERT_GT(scene.colors.size(), 3 * mesh.colors.size()) << "no duplicates at seams";
+  for (std::size_t c = 0; c < scene.indices.size(); ++c) {
+    const auto original = static_cast<std::size_t>(mesh.triangles[c / 3][c % 3]);
+    const Vec3f expected = original == 0 ? Vec3f(0, 1, 0) : mesh.colors[original];
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(scene.colors[3 * scene.indices[c] + k], expected[static_cast<Index>(k)]);
+  }
+}
+
+TEST(GltfLook, ColoursOfVerticesGoToWhiteWithGlass) {
+  SurfaceMesh mesh = testing::unit_box();
+  mesh.colors.assign(mesh.positions.size(), Vec3f(0.5F, 0, 1));
+  Appearance look;
+  look.transmission = 0.5F;
+  const testing::GlbScene scene = painted(mesh, look, true);
+  testing::expect_same_floats(scene.colors, {0.75F, 0.5F, 1});
+}
+
+TEST(GltfLook, ColoursThatAreNotShownAreNotWritten) {
+  SurfaceMesh mesh = testing::unit_box();
+  EXPECT_TRUE(painted(mesh, {}, true).colors.empty()) << "there are none";
+  testing::paint_with_bytes(mesh);
+  const testing::GlbScene scene = painted(mesh, {}, false);
+  EXPECT_TRUE(scene.colors.empty());
+  EXPECT_NEAR(scene.base_color[0], 0.8, 1e-6);
+  EXPECT_FALSE(painted(mesh, {}, true).colors.empty());
 }
 
 TEST(GltfLook, LeavesOtherPicturesOut) {

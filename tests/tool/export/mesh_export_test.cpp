@@ -164,6 +164,49 @@ TEST(PlyExport, HoldsPolygonsOfMoreThan255Corners) {
   EXPECT_EQ(back.triangles.size(), 298U);
 }
 
+std::vector<std::vector<std::uint8_t>> encoded(const SurfaceMesh& mesh) {
+  return {encode_obj(mesh, mesh.positions), encode_ply(mesh, mesh.positions)};
+}
+
+std::vector<SurfaceMesh> read_back_of_both(const SurfaceMesh& mesh) {
+  return {read_back("b.obj", encoded(mesh)[0]), read_back("b.ply", encoded(mesh)[1])};
+}
+
+bool has_text(const std::vector<std::uint8_t>& bytes, const std::string& text) {
+  return std::string(bytes.begin(), bytes.end()).find(text) != std::string::npos;
+}
+
+TEST(MeshExport, ColoursOfBytesReadBackBitForBitBesideAllElse) {
+  SurfaceMesh mesh = testing::patchwork();
+  testing::paint_with_bytes(mesh);
+  EXPECT_TRUE(has_text(encoded(mesh)[1], "property uchar red\n"));
+  for (const SurfaceMesh& back : read_back_of_both(mesh)) {
+    EXPECT_EQ(back.colors, mesh.colors);
+    expect_same_bits(back.positions, mesh.positions);
+    EXPECT_EQ(corner_textures(back), corner_textures(mesh));
+    EXPECT_EQ(groups_of(back), groups_of(mesh));
+  }
+}
+
+TEST(MeshExport, ColoursThatAreNoBytesAreNotRoundedToThem) {
+  SurfaceMesh mesh = testing::unit_box();
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    mesh.colors.emplace_back(0.12345f, 1e-4f * static_cast<float>(v), 0.98765f);
+  EXPECT_TRUE(has_text(encoded(mesh)[1], "property float red\n"));
+  for (const SurfaceMesh& back : read_back_of_both(mesh)) {
+    ASSERT_EQ(back.colors.size(), mesh.colors.size());
+    for (std::size_t v = 0; v < mesh.colors.size(); ++v)
+      EXPECT_LE((back.colors[v] - mesh.colors[v]).cwiseAbs().maxCoeff(), 1e-6f) << "vertex " << v;
+  }
+}
+
+TEST(MeshExport, ColoursThatNoScreenShowsAreHeldInRange) {
+  SurfaceMesh mesh = testing::unit_box();
+  mesh.colors.assign(mesh.positions.size(), Vec3f(-1, 300, std::numeric_limits<float>::quiet_NaN()));
+  for (const SurfaceMesh& back : read_back_of_both(mesh))
+    EXPECT_EQ(back.colors, std::vector<Vec3f>(mesh.positions.size(), Vec3f(0, 1, 0)));
+}
+
 TEST(MeshExport, OfARealMeshHasTheNumbersOfItsFile) {
   const std::string path = testing::shared_mesh("spot.obj");
   if (path.empty()) GTEST_SKIP() << "shared/meshes/spot.obj is not beside the project";

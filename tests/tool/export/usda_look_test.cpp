@@ -1,4 +1,6 @@
 // Looks in USDA, and what formats leave out of looks.
+#include <limits>
+
 #include "tests/tool/export/format_runs.h"
 #include "tests/tool/export/readers/usda_reader.h"
 #include "tool/export/export_look.h"
@@ -81,11 +83,37 @@ TEST(UsdaLook, TexturesAreFoundFromTheFileByItsCoordinates) {
   EXPECT_EQ(look.child("coordinates").property("inputs:varname").value.text, "st");
 }
 
+TEST(UsdaLook, ColoursOfVerticesAreAPrimvarThatTheSurfaceReads) {
+  SurfaceMesh mesh = testing::patchwork();
+  testing::paint_with_bytes(mesh);
+  mesh.colors[0] = Vec3f(-1, 2, std::numeric_limits<float>::quiet_NaN());
+  TextureSettings textures;
+  textures.vertex_colors = true;
+  const auto stage = stage_of(mesh, {}, textures);
+  const UsdPrim& look = stage->child("shot/Looks/cloth");
+  EXPECT_EQ(look.child("surface").property("inputs:diffuseColor").value.text,
+            "/shot/Looks/cloth/vertex_colors.outputs:result");
+  EXPECT_EQ(look.child("vertex_colors").property("info:id").value.text, "UsdPrimvarReader_float3");
+  EXPECT_EQ(look.child("vertex_colors").property("inputs:varname").value.text, "displayColor");
+  const testing::UsdProperty& colors = stage->child("shot/cloth").property("primvars:displayColor");
+  EXPECT_EQ(colors.type, "color3f[]");
+  EXPECT_EQ(colors.metadata.at("interpolation").text, "vertex");
+  std::vector<float> expected{0, 1, 0};
+  for (std::size_t v = 1; v < mesh.colors.size(); ++v)
+    for (int k = 0; k < 3; ++k) expected.push_back(mesh.colors[v][k]);
+  EXPECT_EQ(colors.value.floats(), expected);
+  const auto plain = stage_of(mesh, {});
+  EXPECT_EQ(plain->child("shot/cloth").properties.count("primvars:displayColor"), 0U) << "they are not shown";
+}
+
 TEST(LostLook, NamesInOneLineWhatAFormatLeavesOut) {
   const testing::TemporaryFolder folder;
   MaterialSettings material;
   EXPECT_EQ(lost_look("glb", "gel", material), "");
   EXPECT_EQ(lost_look("usda", "gel", material), "");
+  material.textures.vertex_colors = true;
+  EXPECT_EQ(lost_look("glb", "gel", material), "") << "COLOR_0 has them";
+  EXPECT_EQ(lost_look("usda", "gel", material), "") << "displayColor has them";
   material.textures.base_color = folder.write("color.exr", "\x76\x2f\x31\x01");
   material.textures.bump = folder.path("bump.png");
   material.appearance.subsurface = 0.5F;

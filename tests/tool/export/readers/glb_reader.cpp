@@ -97,12 +97,16 @@ void read_mesh(const Chunks& file, GlbScene& scene) {
     scene.normals = read_accessor<float>(file, attributes["NORMAL"], "VEC3", Use::Vertices);
   if (attributes.contains("TEXCOORD_0"))
     scene.textures = read_accessor<float>(file, attributes["TEXCOORD_0"], "VEC2", Use::Vertices);
+  if (attributes.contains("COLOR_0"))
+    scene.colors = read_accessor<float>(file, attributes["COLOR_0"], "VEC3", Use::Vertices);
   scene.indices = read_accessor<std::uint32_t>(file, primitive.at("indices"), "SCALAR", Use::Indices);
   require(scene.indices.size() % 3 == 0, "whole triangles");
   const std::size_t vertices = scene.positions.size() / 3;
   for (const std::uint32_t index : scene.indices) require(index < vertices, "indices of vertices");
   require(scene.normals.empty() || scene.normals.size() == 3 * vertices, "as many normals as positions");
   require(scene.textures.empty() || scene.textures.size() == 2 * vertices, "as many coordinates as positions");
+  require(scene.colors.empty() || scene.colors.size() == 3 * vertices, "as many colours as positions");
+  for (const float value : scene.colors) require(value >= 0 && value <= 1, "colours from 0 to 1");
   for (const Json& target : primitive.at("targets")) {
     scene.target_positions.push_back(read_accessor<float>(file, target.at("POSITION"), "VEC3", Use::Vertices));
     require_bounds(file, target["POSITION"], scene.target_positions.back());

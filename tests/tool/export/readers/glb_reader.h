@@ -17,7 +17,7 @@ struct GlbScene {
   std::array<double, 4> rotation{0, 0, 0, 1};  ///< x, y, z, w
   std::array<double, 4> base_color{1, 1, 1, 1};
   double metallic = 1, roughness = 1;
-  std::vector<float> positions, normals, textures;                   ///< of the base
+  std::vector<float> positions, normals, textures, colors;           ///< of the base
   std::vector<std::uint32_t> indices;                                ///< triangles
   std::vector<std::vector<float>> target_positions, target_normals;  ///< differences to the base
   std::vector<float> times;                                          ///< seconds, of the keys
