@@ -283,17 +283,16 @@ std::vector<PlainLevel> coarsen_repeatedly(PlainLevel finest, LatticeFrame frame
 /// more nodes around the large ones than they have themselves: then each part is coarsened from its own size on.
 std::vector<PlainLevel> find_levels(const TetMesh& mesh, std::span<const double> element_stiffness,
                                     const BlockPattern& pattern, const MultigridParams& params) {
-  PlainLevel finest{
-      {mesh.nodes, block_stiffness(mesh, element_stiffness, pattern, params.stiffness_contrast), mesh.spacings},
-      pattern,
-      {}};
   const LatticeFrame frame = finest_frame(mesh);
-  if (mesh.lattice.spacing > 0 || !mesh.spacings.empty())
-    return coarsen_repeatedly(std::move(finest), frame, params, Rescue::Try);
-  std::vector<PlainLevel> levels = coarsen_repeatedly(finest, frame, params, Rescue::Leave);
+  const auto levels_by = [&](std::vector<double> spacings, Rescue rescue) {
+    std::vector<double> stiffness = block_stiffness(mesh, element_stiffness, pattern, params.stiffness_contrast);
+    return coarsen_repeatedly({{mesh.nodes, std::move(stiffness), std::move(spacings)}, pattern, {}}, frame, params,
+                              rescue);
+  };
+  if (mesh.lattice.spacing > 0 || !mesh.spacings.empty()) return levels_by(mesh.spacings, Rescue::Try);
+  std::vector<PlainLevel> levels = levels_by({}, Rescue::Leave);
   if (!is_dear(levels.back().pattern, pattern, params)) return levels;
-  finest.nodes.spacings = node_spacings(mesh, frame.spacing);
-  std::vector<PlainLevel> by_size = coarsen_repeatedly(std::move(finest), frame, params, Rescue::Try);
+  std::vector<PlainLevel> by_size = levels_by(node_spacings(mesh, frame.spacing), Rescue::Try);
   return factor_work(by_size.back().pattern) < factor_work(levels.back().pattern) ? by_size : levels;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/check.h"
@@ -25,6 +26,18 @@ inline void check_message(const Error& error) {
   CHECK(message.starts_with("fuzz"));
   CHECK(message.size() < 1000U);
   for (const char c : message) CHECK((c == '\n' || static_cast<unsigned char>(c) >= ' '));
+}
+
+/// Gives an input's first byte and what follows to `read`, which may refuse it by an Error.
+template <typename Read>
+int run_input(const std::uint8_t* data, std::size_t size, const Read& read) {
+  if (size == 0) return 0;
+  try {
+    read(data[0], std::string_view(reinterpret_cast<const char*>(data) + 1, size - 1));
+  } catch (const Error& error) {
+    check_message(error);
+  }
+  return 0;
 }
 
 }  // namespace softreel::fuzz

@@ -24,16 +24,11 @@ std::vector<std::string> seeds() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softreel;
-  if (size == 0) return 0;
-  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  try {
+  return fuzz::run_input(data, size, [](std::uint8_t, std::string_view bytes) {
     const EnvironmentImage image = decode_radiance("fuzz", bytes);
     CHECK(image.width > 0);
     CHECK(image.height > 0);
     CHECK(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     for (const Vec3f& pixel : image.pixels) CHECK(pixel.allFinite());
-  } catch (const Error& error) {
-    fuzz::check_message(error);
-  }
-  return 0;
+  });
 }

@@ -100,18 +100,13 @@ std::vector<std::string> seeds() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softreel;
-  if (size == 0) return 0;
-  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  try {
-    SurfaceMesh mesh = fuzz::kReaders[data[0] % std::size(fuzz::kReaders)]({"fuzz", bytes}, Log{});
+  return fuzz::run_input(data, size, [](std::uint8_t format, std::string_view bytes) {
+    SurfaceMesh mesh = fuzz::kReaders[format % std::size(fuzz::kReaders)]({"fuzz", bytes}, Log{});
     fuzz::check_polygons(mesh);
     triangulate_polygons(mesh);
     fuzz::check_triangles(mesh);
     describe(check_mesh(mesh));
     repair_mesh(mesh);
     fuzz::check_triangles(mesh);
-  } catch (const Error& error) {
-    fuzz::check_message(error);
-  }
-  return 0;
+  });
 }

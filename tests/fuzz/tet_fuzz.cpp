@@ -102,13 +102,8 @@ std::vector<std::string> seeds() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace softreel;
-  if (size == 0) return 0;
-  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  const char* const extension = fuzz::kExtensions[data[0] % std::size(fuzz::kExtensions)];
-  try {
+  return fuzz::run_input(data, size, [](std::uint8_t format, std::string_view bytes) {
+    const char* const extension = fuzz::kExtensions[format % std::size(fuzz::kExtensions)];
     fuzz::check_mesh(decode_tet_mesh("fuzz", bytes, extension, Log{}));
-  } catch (const Error& error) {
-    fuzz::check_message(error);
-  }
-  return 0;
+  });
 }
