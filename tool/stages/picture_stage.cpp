@@ -117,11 +117,15 @@ bool PictureStage::recall(int frame, const StageKey& picture) {
     outputs_.link(one.file.path, one.file.key, stored, one.bytes, one.record.seconds);
     if (picture != trace) store_picture_record(context_.cache, one.file.key, one.record);
   }
-  // So that a change of view or exposure can develop this frame as well, without looking at the scene.
-  const auto linear =
-      picture != trace ? load_picture_record(context_.cache, file_key(frame, kLinear, picture)) : std::nullopt;
-  if (linear) store_picture_record(context_.cache, file_key(frame, kLinear, trace), *linear);
+  const auto linear = load_picture_record(context_.cache, file_key(frame, kLinear, picture));
+  if (linear) note_linear(frame, picture, *linear);
   return true;
+}
+
+/// So that a change of view or exposure can develop this frame as well, without looking at the scene.
+void PictureStage::note_linear(int frame, const StageKey& picture, const PictureRecord& linear) {
+  if (const StageKey trace = trace_key(frame); picture != trace)
+    store_picture_record(context_.cache, file_key(frame, kLinear, trace), linear);
 }
 
 Bytes PictureStage::encode_display(int frame, const Bytes& half) const {
@@ -140,6 +144,7 @@ bool PictureStage::develop(int frame, const StageKey& picture) {
   const auto half = context_.cache.load_file(linear->checksum);
   if (!half) return false;
   // The display picture goes to the cache; then all files of the frame come from there, or the frame must be traced.
+  note_linear(frame, picture, *linear);
   const Bytes png = encode_display(frame, *half);
   const Cache::StoredFile stored = context_.cache.store_file(png);
   if (stored.is_there)

@@ -67,6 +67,7 @@ class PictureStage {
 
  private:
   void place(const File& file, const Cache::StoredFile& stored, const Bytes& bytes, double seconds);
+  void note_linear(int frame, const StageKey& picture, const PictureRecord& linear);
   Bytes encode_display(int frame, const Bytes& half) const;
   StageKey file_key(int frame, const std::string& extension, const StageKey& picture) const;
 
