@@ -23,21 +23,50 @@ constexpr double kLeastTolerance = 1e-7;
 /// core were as exact as by double precision (6e-4 at a tolerance of 1e-3), at 8e5 five times less so.
 constexpr double kGreatestRatio = 3e4;
 
-/// Greatest mean diagonal entry of K's share in S over the mass part of S, of all nodes. A rotation does not change it.
-double stiffness_over_mass(const Simulator::Parts& parts, const StepSeconds& seconds) {
-  std::vector<double> traces(parts.nodes(), 0.0);
-  for (std::size_t e = 0; e < parts.body.tets.size(); ++e) {
-    const ElementShape& shape = parts.body.shapes[e];
-    const double modulus = parts.body.laws[e].lambda + 4 * parts.body.laws[e].mu;
-    const double factor = seconds.velocity * (seconds.position + parts.damping_stiffness[e]) * shape.volume * modulus;
-    for (std::size_t k = 0; k < 4; ++k)
-      traces[static_cast<std::size_t>(parts.body.tets[e][k])] +=
-          factor * shape.gradients.col(static_cast<Index>(k)).squaredNorm();
+/// Rings of neighbours that the ratio is taken over: a part that could move rigidly is larger than a node. The small
+/// tetrahedra at a surface have ten times the ratio of what they hang on, which decides how they move.
+constexpr int kRatioRings = 2;
+
+/// values[i] = the sum over the elements of node i of their means.
+void sum_over_ring(const std::vector<Tet>& tets, std::vector<double>& values) {
+  std::vector<double> sums(values.size(), 0.0);
+  for (const Tet& tet : tets) {
+    double sum = 0;
+    for (const Index node : tet) sum += values[static_cast<std::size_t>(node)];
+    for (const Index node : tet) sums[static_cast<std::size_t>(node)] += 0.25 * sum;
   }
+  values = std::move(sums);
+}
+
+/// The values summed over the rings of each node; of float, as nobody needs more of them.
+std::vector<float> sum_over_rings(const std::vector<Tet>& tets, std::vector<double> values) {
+  for (int ring = 0; ring < kRatioRings; ++ring) sum_over_ring(tets, values);
+  return {values.begin(), values.end()};
+}
+
+RigidityOverMass rigidity_over_mass(const Simulator::Parts& parts) {
+  const std::vector<Tet>& tets = parts.body.tets;
+  std::vector<double> stiffness(parts.nodes(), 0.0), damping(parts.nodes(), 0.0);
+  for (std::size_t e = 0; e < tets.size(); ++e) {
+    const ElementShape& shape = parts.body.shapes[e];
+    const double factor = shape.volume * (parts.body.laws[e].lambda + 4 * parts.body.laws[e].mu) / 3;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double entry = factor * shape.gradients.col(static_cast<Index>(k)).squaredNorm();
+      stiffness[static_cast<std::size_t>(tets[e][k])] += entry;
+      damping[static_cast<std::size_t>(tets[e][k])] += parts.damping_stiffness[e] * entry;
+    }
+  }
+  return {sum_over_rings(tets, std::move(stiffness)), sum_over_rings(tets, std::move(damping)),
+          sum_over_rings(tets, parts.masses.mass), sum_over_rings(tets, parts.masses.damping)};
+}
+
+/// Greatest mean diagonal entry of K's share in S over the mass part of S, of all nodes and what is around them. A
+/// rotation does not change it.
+double greatest_ratio(const RigidityOverMass& ratio, const StepSeconds& seconds) {
   double greatest = 0;
-  for (std::size_t i = 0; i < traces.size(); ++i)
-    greatest =
-        std::max(greatest, traces[i] / (3 * (parts.masses.mass[i] + seconds.velocity * parts.masses.damping[i])));
+  for (std::size_t i = 0; i < ratio.mass.size(); ++i)
+    greatest = std::max(greatest, seconds.velocity * (seconds.position * ratio.stiffness[i] + ratio.damping[i]) /
+                                      (ratio.mass[i] + seconds.velocity * ratio.mass_damping[i]));
   return greatest;
 }
 
@@ -163,7 +192,8 @@ bool suits_float(Simulator::Parts& parts, const StepWork& work) {
   const StepSeconds& seconds = work.step.seconds;
   if (parts.float_seconds != seconds) {
     parts.float_seconds = seconds;
-    parts.float_ratio = stiffness_over_mass(parts, seconds);
+    if (parts.rigidity.mass.empty()) parts.rigidity = rigidity_over_mass(parts);
+    parts.float_ratio = greatest_ratio(parts.rigidity, seconds);
   }
   return parts.params.tolerance >= kLeastTolerance && parts.float_ratio <= kGreatestRatio &&
          glue_over_mass(parts, work) <= kGreatestRatio;

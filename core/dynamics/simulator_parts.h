@@ -43,6 +43,14 @@ struct KnownRest {
   std::vector<ActivePull> pulls;
 };
 
+/// Diagonal of stiffness and masses around each node, by which float is judged (suits_float): sums over its neighbours.
+struct RigidityOverMass {
+  std::vector<float> stiffness;     ///< N/m
+  std::vector<float> damping;       ///< of strain, Ns/m
+  std::vector<float> mass;          ///< kg
+  std::vector<float> mass_damping;  ///< kg/s
+};
+
 /// Young's modulus per element, Pa.
 std::vector<double> youngs_moduli(const std::vector<ElementMaterial>& materials);
 
@@ -65,6 +73,7 @@ struct Simulator::Parts {
   BlockMatrixd matrix;
   Multigrid multigrid;
   std::vector<double> damping_stiffness;  ///< per element, s
+  RigidityOverMass rigidity;              ///< empty until it is asked for
   StepSeconds float_seconds;              ///< those that float_ratio was found for
   double float_ratio = 0;                 ///< see suits_float
   AlignedVector<double> tension_limits;   ///< StepSource::tension_limits; made when first asked for

@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/tetmesh/filling/tetrahedralize.h"
 #include "tests/core/dynamics/dynamics_support.h"
+#include "tests/support/surfaces.h"
 
 namespace softreel {
 namespace {
@@ -200,6 +202,31 @@ TEST(Simulator, StepsInFloatAsInDoubleToTheTolerance) {
         EXPECT_LT(std::sqrt(difference), 5 * tolerance * std::sqrt(change)) << stiffest << " " << tolerance;
       }
     }
+}
+
+/// Cut by a surface: some of its tetrahedra are a tenth as thick as the others, and stiff for their mass.
+BodyModel hard_ring(const Threads& threads) {
+  const SurfaceMesh surface = test::make_torus(0.3, 0.1, 64, 32, Vec3::Zero());
+  StageTimes times;
+  BodyModel model = body_model(tetrahedralize(surface, {.edge = 0.03}, "ring", threads, {}, times), soft());
+  for (ElementMaterial& material : model.materials) material.youngs_modulus = 1e7;
+  model.pins = {testing::make_pin(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() < -0.35; }))};
+  return model;
+}
+
+TEST(Simulator, ThinTetrahedraAtASurfaceLeaveABodyItsStepsInFloat) {
+  const Threads threads(1);
+  Bench bench(hard_ring(threads)), exact(hard_ring(threads), exact_params());
+  for (int k = 1; k <= 8; ++k) {
+    const StepReport step = bench.simulator.step(0.25 * k, 1.0 / 96);
+    ASSERT_TRUE(step.ok());
+    // Coarse levels are kept by steps in float only.
+    EXPECT_EQ(step.kept_hierarchy, k % 4 != 1) << k;
+    ASSERT_TRUE(exact.simulator.step(0.25 * k, 1.0 / 96).ok());
+  }
+  const std::vector<Vec3>&found = bench.simulator.state().positions, &expected = exact.simulator.state().positions;
+  const double moved = testing::greatest_distance(expected, hard_ring(threads).mesh.nodes);
+  EXPECT_LT(testing::greatest_distance(found, expected), SolverParams().tolerance * moved);
 }
 
 TEST(Simulator, StepsWithTheSameBitsOnOneAndFourThreads) {
