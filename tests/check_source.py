@@ -20,13 +20,16 @@ RENDER_MAY = {"base", "mesh"}
 FENCES = [
     (r"<assimp/", r"core/mesh/readers/assimp_(scene_)?reader\.cpp$"),
     (r"<(tbb|oneapi)/", r"core/base/parallel\.(h|cpp)$"),
-    (r"<embree3/", r"render/pathtrace/(ray_scene_embree\.cpp|rays_embree\.h)$"),
+    (r"<embree3/", r"render/pathtrace/rays/(ray_scene_embree\.cpp|rays_embree\.h)$"),
     (r"<(EGL|GL|epoxy)/", r"render/preview/egl/[a-z_]+\.(cpp|h)$"),
     (r"<(Imf|Imath|OpenEXR|png\.h|stb)", r"render/image/image_io\.cpp$"),
     (r"<openvdb/", r"(tool/export/level_set_openvdb|tests/tool/export/level_set_test)\.cpp$"),
     (r"<(toml\+\+|nlohmann|CLI)/", r"^(tool|tests/tool)/"),
     (r"<(petsc|cholmod|Eigen/CholmodSupport)", r"^tests/benchmark/rivals/"),
-    (r"<(immintrin|x86intrin|experimental/simd)", r"_simd\.(cpp|h)$"),
+    (r"<(immintrin|x86intrin)", r"core/sparse/row_product_simd\.h$"),
+    (r"<experimental/simd", r"_simd\.cpp$"),
+    (r'"core/sparse/row_product_simd\.h', r"(core/multigrid/smoother_rows\.h|tests/core/sparse/block_kernels_test\.cpp)$"),
+    (r'"core/multigrid/smoother_rows\.h', r"core/multigrid/[a-z_]+\.cpp$"),
 ]
 
 

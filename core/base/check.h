@@ -72,7 +72,8 @@ inline CheckResult check_result(CheckResult result) {
 }
 template <typename L>
 CheckResult check_result(const CheckLeft<L>& alone) {
-  return {static_cast<bool>(alone.left), printed(alone.left)};
+  const auto passed = static_cast<bool>(alone.left);
+  return {passed, passed ? std::string() : printed(alone.left)};
 }
 
 }  // namespace softreel::detail

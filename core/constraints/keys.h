@@ -63,6 +63,8 @@ struct Transform {
   Vec3 scale = Vec3::Ones();
   Vec3 pivot = Vec3::Zero();  ///< m, centre of rotation and scale
 
+  bool operator==(const Transform&) const = default;
+
   Transform operator+(const Transform& o) const;
   Transform operator-(const Transform& o) const;
   friend Transform operator*(double s, const Transform& t);

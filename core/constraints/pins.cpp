@@ -1,6 +1,7 @@
 #include "core/constraints/pins.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -20,6 +21,18 @@ Vec3 rest_point(std::size_t point, const Embedding& embedding, const TetMesh& me
   for (std::size_t k = 0; k < 4; ++k)
     position += embedding.weights[point][k] * mesh.nodes[static_cast<std::size_t>(tet[k])];
   return position;
+}
+
+/// Sorts frames and adds a whole one between each and the next, where steps end whatever their length: at a third of
+/// the way, as eases that differ agree again at the half.
+void add_frames_between(std::vector<double>& frames) {
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  for (std::size_t k = frames.size(); k-- > 1;) {
+    const double between = std::round(frames[k - 1] + (frames[k] - frames[k - 1]) / 3);
+    if (between > frames[k - 1] && between < frames[k]) frames.push_back(between);
+  }
+  std::sort(frames.begin(), frames.end());
 }
 
 double box_diagonal(const std::vector<Vec3>& points) {
@@ -136,8 +149,7 @@ std::string NodePins::find_conflict() const {
       frames.push_back(range.last);
     }
   }
-  std::sort(frames.begin(), frames.end());
-  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  add_frames_between(frames);
   // In one workspace: a captured motion has a key a frame, and a mesh far more nodes than its pins hold.
   PinnedNodes pinned = nothing_held();
   std::vector<std::size_t> owner(rest_positions_.size(), 0);

@@ -37,8 +37,8 @@ class NodePins {
   void update(std::span<Grab> grabs, double frame, std::span<const Vec3> positions) const;
   bool grab() const;
 
-  /// The first conflict at a frame where two pins could start to differ: their keys and the ends of their ranges.
-  /// Empty if there is none; between keys, and of pins that grab, `at` still looks.
+  /// The first conflict at a frame where two pins could start to differ (their keys and the ends of their ranges) or at
+  /// a whole frame between two such. Empty if there is none; elsewhere, and of pins that grab, `at` still looks.
   std::string find_conflict() const;
 
  private:

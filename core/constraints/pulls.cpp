@@ -3,10 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "core/constraints/targets.h"
+#include "core/elasticity/elastic_body.h"
 
 namespace softreel {
 namespace {
+
+/// Of an edge: as in skinning, a point whose weights give another place by more than that was not embedded where it is.
+constexpr double kApart = 1e-6;
+
+/// A spring's stiffness on a node grows with the square of its weight: of slivers, offsets that do not turn are better.
+constexpr double kMostWeight = 8;
 
 /// From the spring's point to its target.
 Vec3 stretch(const Spring& spring, std::span<const Vec3> positions) {
@@ -23,12 +32,35 @@ double unlimited_energy(const ActivePull& pull, std::span<const Vec3> positions)
   return energy;
 }
 
-Spring make_spring(const Vec3& rest_point, const Tet& tet, const std::array<double, 4>& weights, const TetMesh& mesh) {
+/// The part of a rest point that the weights of its element do not give.
+Vec3 offset_of(const Vec3& rest_point, const Tet& tet, const std::array<double, 4>& weights, const TetMesh& mesh) {
+  Vec3 offset = rest_point;
+  for (std::size_t k = 0; k < 4; ++k) offset -= weights[k] * mesh.nodes[static_cast<std::size_t>(tet[k])];
+  return offset;
+}
+
+/// Where the bounded weights of the embedding give another point, what they leave out is carried on from its element:
+/// an offset that did not turn with it would resist rigid rotation.
+std::array<double, 4> spring_weights(const Vec3& rest_point, const Tet& tet, const std::array<double, 4>& weights,
+                                     const TetMesh& mesh) {
+  const Vec3 apart = offset_of(rest_point, tet, weights, mesh);
+  const TetNodes x = nodes_of(tet, mesh.nodes);
+  if (!(apart.squaredNorm() > kApart * kApart * (x[1] - x[0]).squaredNorm())) return weights;
+  Mat3 edges;
+  for (int k = 0; k < 3; ++k) edges.col(k) = x[static_cast<std::size_t>(k) + 1] - x[0];
+  const Vec3 more = edges.inverse() * apart;
+  const std::array<double, 4> whole{weights[0] - more.sum(), weights[1] + more[0], weights[2] + more[1],
+                                    weights[3] + more[2]};
+  const bool is_bounded = std::all_of(whole.begin(), whole.end(), [](double w) { return std::abs(w) <= kMostWeight; });
+  return is_bounded ? whole : weights;
+}
+
+Spring make_spring(const Vec3& rest_point, const Tet& tet, const std::array<double, 4>& bounded, const TetMesh& mesh) {
   Spring spring;
+  const std::array<double, 4> weights = spring_weights(rest_point, tet, bounded, mesh);
   std::copy(tet.begin(), tet.end(), spring.nodes.begin());
   std::copy(weights.begin(), weights.end(), spring.weights.begin());
-  spring.offset = rest_point;
-  for (std::size_t k = 0; k < 4; ++k) spring.offset -= weights[k] * mesh.nodes[static_cast<std::size_t>(tet[k])];
+  spring.offset = offset_of(rest_point, tet, weights, mesh);
   return spring;
 }
 

@@ -22,12 +22,13 @@ namespace softreel {
 
 /// One spring from a surface point, which lies at offset + sum weights[k] x_k, to a target; or one between two points
 /// of the material (glue.h): then the nodes are those of both, the weights of the second are negative, and offset and
-/// target are zero.
+/// target are zero. The weights of a point outside of its element extrapolate, as far as it is: rigid motion of the
+/// element takes the point along.
 struct Spring {
   std::array<Index, 8> nodes{};
   std::array<double, 8> weights{};
   std::size_t count = 4;       ///< of the nodes: those of one element, or of two
-  Vec3 offset = Vec3::Zero();  ///< m; zero for a point inside its element
+  Vec3 offset = Vec3::Zero();  ///< m; round-off, as the weights give the point
   Vec3 target = Vec3::Zero();  ///< m
   double stiffness = 0;        ///< N/m
   bool joins_material() const { return count == 8; }

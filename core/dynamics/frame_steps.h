@@ -9,7 +9,8 @@ namespace softreel {
 
 /// With error control a frame is cut in `substeps` parts, each of them halved as often as max_substeps allows: every
 /// step is a part or a half, quarter ... of it at a multiple of its length. So steps end exactly at parts and frames,
-/// and the times at which constraints are looked up are known beforehand.
+/// and the times at which constraints are looked up are known beforehand. They also end at the first and the last tick
+/// at which a constraint is on, and where it jumps: it may be shorter than a step.
 struct FrameGrid {
   int parts = 1;  ///< per frame
   int ticks = 1;  ///< per part, a power of two: the shortest steps; 1 without error control

@@ -28,7 +28,7 @@ BlockMatrixd take_distorted(Simulator::Parts& parts, const StepWork& work, Strai
   const std::vector<Vec3>& positions = euler ? parts.state.positions : work.positions;
   std::vector<Quaternion> rotations = parts.state.rotations;
   find_rotations(parts.body, parts.params.rotation, positions, rotations, parts.threads);
-  find_stiffness_terms(parts.body, positions, rotations, shares, Curvature::None, parts.terms, {}, parts.threads);
+  find_stiffness_terms(parts.body, positions, rotations, shares, Curvature::None, parts.terms, parts.threads);
   parts.assembler().assemble(parts.terms, std::vector<double>(parts.nodes(), 0.0), frozen, parts.threads);
   return frozen;
 }

@@ -15,6 +15,9 @@ namespace {
 /// Glue of 1e4 times the stiffness of firm glue took ten times the iterations on one bar; other solves ended there.
 constexpr double kStiffGlue = 1e3;
 
+/// Pulls of 1e20 times the stiffness of a bar were solved in its equilibria; one of 1e25 times was not.
+constexpr double kStiffPull = 1e18;
+
 /// Diagonal of the box around the nodes, m.
 double box_diagonal(const std::vector<Vec3>& nodes) {
   Vec3 low = nodes.front(), high = low;
@@ -192,6 +195,24 @@ std::string Simulator::Parts::find_stiff_glue(double frame) const {
   return {};
 }
 
+namespace {
+
+/// Names the first pull active at `frame` that is so stiff that its rounding drowns all other forces; empty if there is
+/// none.
+std::string find_stiff_pull(const Simulator::Parts& parts, double frame) {
+  double hardest = 0;
+  for (const ElementMaterial& material : parts.model.materials) hardest = std::max(hardest, material.youngs_modulus);
+  for (const Pull& pull : parts.model.pulls) {
+    const double stiffness = pull.stiffness.at(frame), own = hardest * parts.body_size;
+    if (is_active(pull.active, frame) && stiffness > kStiffPull * own)
+      return fmt::format("{}: its stiffness of {:g} N/m is {:.2g} times that of the body, about {:.2g} N/m", pull.name,
+                         stiffness, stiffness / own, own);
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string Simulator::Parts::describe_element(std::size_t element) const {
   const TetNodes rest = nodes_of(body.tets[element], body.rest_positions);
   const Vec3 center = 0.25 * (rest[0] + rest[1] + rest[2] + rest[3]);
@@ -212,6 +233,7 @@ std::string Simulator::Parts::find_culprit(double frame, std::span<const Vec3> p
     if (!std::isfinite(F.squaredNorm())) return blamed(e, "has a force that is not finite");
   }
   if (std::string pull = find_boundless_pull(frame, positions); !pull.empty()) return pull;
+  if (std::string pull = find_stiff_pull(*this, frame); !pull.empty()) return pull;
   if (std::string glue = find_stiff_glue(frame); !glue.empty()) return glue;
   std::size_t worst = 0;
   double greatest = -1;

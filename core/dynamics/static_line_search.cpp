@@ -41,9 +41,10 @@ StaticState StaticSolver::moved(const StaticState& state, std::span<const Vec3> 
 /// The watchdog of Chamberlain, Powell, Lemarechal and Pedersen (1982): full steps may lead uphill for a while if they
 /// end below. A stiff part that turns by w along a straight line is strained by w^2 / 2, which the next step takes back
 /// by turning on; a search along the line would never turn it farther than its stiffness to the power -1/3. Each
-/// failure doubles the iterations until the next try. Steps of time only: statics may have far to go.
+/// failure doubles the iterations until the next try. In statics, which may have far to go, only where parts are so
+/// much stiffer than others that they hardly do anything but turn.
 bool StaticSolver::search_ahead(StaticState& state, double tolerance, std::span<const Vec3> direction) {
-  if (potential_ == nullptr || unstable_ || !has_energy(parts_.params.rotation)) return false;
+  if (!(potential_ != nullptr || has_rigid_parts_) || unstable_ || !has_energy(parts_.params.rotation)) return false;
   if (iterations_ < next_ahead_) return false;
   const double slope = dot(direction, state.forces);
   StaticState next = moved(state, direction, 1);

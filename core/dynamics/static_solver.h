@@ -13,11 +13,17 @@ namespace softreel {
 /// P-wave modulus, Pa: the greatest stiffness of the law where its lambda is not negative.
 double p_wave_modulus(const ElasticLaw& law);
 
-/// How the forces on one piece balance, N.
-struct PieceBalance {
+/// How the forces on some nodes balance, N.
+struct ForceBalance {
   double residual = 0;   ///< norm of the unbalanced forces
   double scale = 0;      ///< norm over nodes of the summed magnitudes of the forces that balance there
   double round_off = 0;  ///< residual that the rounding of positions alone explains
+};
+
+/// Those on one piece. In statics the nodes where springs round more than all else are also told from the others: what
+/// the rounding of a stiff spring explains is no balance of the rest of the body. In time steps all are others.
+struct PieceBalance {
+  ForceBalance all, sprung, others;
 };
 
 /// A state on the way to equilibrium, with all that the iteration compares.
@@ -32,8 +38,8 @@ struct StaticState {
   std::vector<PieceBalance> pieces = {};
 };
 
-/// True if in each piece |forces| <= tolerance * scale, or at most `rounding` times what rounding explains (0: only
-/// pieces on which nothing acts are excused by that).
+/// True if in each piece |forces| <= tolerance * scale, or at most `rounding` times what rounding explains, of the
+/// sprung nodes and of the others alike (0: only pieces on which nothing acts are excused by that).
 bool balances(const StaticState& state, double tolerance, double rounding = 0);
 /// The greatest residual over its scale of a piece on which anything acts; not a number if one is none.
 double imbalance(const StaticState& state);
@@ -84,6 +90,7 @@ class StaticSolver {
   std::vector<double> shares_;      ///< per element: 1 and b / r of damping
   std::vector<double> node_terms_;  ///< inertia; in statics, what holds the rigid motions of pieces without a pin
   std::vector<Vec3> step_forces_;   ///< of the potential at the state that was last evaluated, N
+  bool has_rigid_parts_;            ///< beside the softest, the stiffest material hardly deforms
   bool unstable_ = false;           ///< the exact tangent gave no direction of descent at the present state
   int iterations_ = 0;
   int ahead_pause_ = 1, next_ahead_ = 0;  ///< iterations to leave out after a failure of search_ahead; its next try

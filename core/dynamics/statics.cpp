@@ -1,8 +1,7 @@
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include "core/base/error.h"
+#include "core/dynamics/holding.h"
 #include "core/dynamics/pin_motion.h"
 #include "core/dynamics/static_solver.h"
 
@@ -20,23 +19,6 @@ void report_step(SolveReport& total, const SolveReport& step) {
   const int iterations = total.iterations + step.iterations;
   total = step;
   total.iterations = iterations;
-}
-
-/// A piece that nothing holds has no equilibrium under gravity.
-void check_held(const Simulator::Parts& parts, const std::vector<std::uint8_t>& held, double frame) {
-  if (parts.model.gravity.isZero(0)) return;
-  const auto loose = std::find(held.begin(), held.end(), std::uint8_t{0});
-  if (loose == held.end()) return;
-  const auto piece = static_cast<Index>(loose - held.begin());
-  const auto node = static_cast<std::size_t>(
-      std::find(parts.pieces.of_node.begin(), parts.pieces.of_node.end(), piece) - parts.pieces.of_node.begin());
-  const Vec3& at = parts.model.mesh.nodes[node];
-  throw input_error(fmt::format(
-      "{}: at frame {} no pin or pull holds {} (near ({:.6g}, {:.6g}, {:.6g})), so under gravity it falls for ever and "
-      "has no equilibrium.\n  Accepted: a pin or pull on every piece, or no gravity. Add a pin, set gravity to 0, or "
-      "use mode = \"dynamic\" with start = \"rest\".",
-      parts.model.name, frame, held.size() == 1 ? "the body" : fmt::format("piece {} of the body", piece), at.x(),
-      at.y(), at.z()));
 }
 
 /// Equilibrium with the held nodes at the end of their motion, in smaller moves where one is too much.
@@ -80,14 +62,10 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
   std::vector<GlueBond> bonds = bonds_at(frame);
   join(bonds);
   const std::vector<ActivePull> pulls = pulls_at(frame, grabs, bonds);
+  if (!pinned.conflict.empty()) throw input_error(pinned.conflict);
   StepReport report;
-  if (!pinned.conflict.empty()) {
-    report.solve.status = SolveStatus::Breakdown;
-    report.culprit = pinned.conflict;
-    return report;
-  }
   const std::vector<std::uint8_t> held = held_pieces(pinned, pulls);
-  check_held(*this, held, frame);
+  check_holding(*this, held, pinned, pulls, frame);
   StaticState next{state.positions, state.rotations, {}};
   follow_rigidly(pieces, pinned.held, pinned.targets, body.tets, next.positions, next.rotations);
   const HeldMotion motion(body.tets, pinned.held, next.positions, pinned.targets);
@@ -95,7 +73,8 @@ StepReport Simulator::Parts::find_equilibrium(double frame) {
   report.solve = solve_in_steps(*this, solver, next, motion);
   report.nonlinear_iterations = solver.iterations();
   if (!report.ok()) {
-    report.culprit = find_culprit(frame, next.positions, next.forces);
+    report.culprit = find_spent_pull(*this, pinned, grabs, bonds, frame, next.positions);
+    if (report.culprit.empty()) report.culprit = find_culprit(frame, next.positions, next.forces);
     return report;
   }
   state = {std::move(next.positions), std::vector<Vec3>(nodes(), Vec3::Zero()), std::move(next.rotations)};

@@ -8,12 +8,14 @@
 /// and the force correction f0 stands beside K, the elastic force is evaluated by itself: it is the same force, but
 /// exact for a capped dilatation and without the cancellation of K x against f0. Beside t r K stands t r G, the
 /// stiffness that tension adds, where leaving it out could make the body flutter (core/elasticity/tension.h): it enters
-/// matrix and right side alike, so at rest nothing changes.
+/// matrix and right side alike, so at rest nothing changes. How fast elements turn at the step's start is not
+/// damped (core/elasticity/step_terms.h): velocities predicted for its end made stretched bars flutter in BDF2's steps.
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "core/base/error.h"
 #include "core/dynamics/linear_system.h"
 #include "core/dynamics/step_work.h"
 #include "core/elasticity/tension.h"
@@ -54,7 +56,9 @@ BlockPattern element_pattern(const Simulator::Parts& parts) {
 StepSource find_source(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities) {
   StepSource source{work.positions,          end_velocities, work.rotations,   work.step.seconds,
                     parts.damping_stiffness, work.offsets,   work.kept_change, {}};
-  if (parts.params.rotation == RotationMethod::None || source.seconds.position == 0) return source;
+  if (parts.params.rotation == RotationMethod::None) return source;
+  if (parts.damps_strain()) source.turning_velocities = parts.state.velocities;
+  if (source.seconds.position == 0) return source;
   if (parts.tension_limits.empty())
     parts.tension_limits = find_tension_limits(
         parts.body, find_thickness(parts.model.mesh, element_pattern(parts), youngs_moduli(parts.model.materials)),
@@ -69,8 +73,7 @@ void assemble_step(Simulator::Parts& parts, StepWork& work) {
   std::vector<double> shares(parts.body.tets.size());
   for (std::size_t e = 0; e < shares.size(); ++e)
     shares[e] = seconds.velocity * (seconds.position + parts.damping_stiffness[e]);
-  find_stiffness_terms(parts.body, work.positions, work.rotations, shares, Curvature::None, parts.terms, {},
-                       parts.threads);
+  find_stiffness_terms(parts.body, work.positions, work.rotations, shares, Curvature::None, parts.terms, parts.threads);
   parts.terms.curvatures = find_tension_curvatures(parts.body, find_source(parts, work, {}), parts.threads);
   parts.assembler().assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
   for (const ActivePull& pull : work.pulls)
@@ -313,11 +316,7 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work) {
 StepReport Simulator::Parts::step(double frame, double seconds, double error_limit) {
   StepWork work{{}, pins.at(frame, state.grabs.pins), {}, {}, state.rotations, {}, {}, {}, {}, {}, state.troubles};
   StepReport report;
-  if (!work.pinned.conflict.empty()) {
-    report.solve.status = SolveStatus::Breakdown;
-    report.culprit = work.pinned.conflict;
-    return report;
-  }
+  if (!work.pinned.conflict.empty()) throw input_error(work.pinned.conflict);
   work.bonds = bonds_at(frame);
   join(work.bonds);
   work.pulls = pulls_at(frame, state.grabs, work.bonds);

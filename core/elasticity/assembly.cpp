@@ -45,11 +45,6 @@ void store_gradients(const ElementSource& source, double share, double* gradient
   }
 }
 
-Mat3 weighted_stress(const ElementSource& source) {
-  const Mat3 stress = 2 * source.law.mu * source.strain + source.law.pressure(source.strain.trace()) * Mat3::Identity();
-  return source.rotation * (source.shape.volume * stress);
-}
-
 void store_block(const Mat3& value, double* block) {
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> destination(block);
   destination = value;
@@ -65,7 +60,7 @@ Mat3 matrix_of(const std::array<Row, 3>& rows) {
 
 void find_stiffness_terms(const ElasticBody& body, std::span<const Vec3> positions,
                           std::span<const Quaternion> rotations, std::span<const double> shares, Curvature curvature,
-                          StiffnessTerms& terms, std::span<Mat3> stresses, const Threads& threads) {
+                          StiffnessTerms& terms, const Threads& threads) {
   const std::size_t elements = body.tets.size();
   const double expected_ratio = elements > 0 ? body.laws[0].lambda / body.laws[0].mu : 0.0;
   terms.gradients.resize(16 * elements);
@@ -76,7 +71,6 @@ void find_stiffness_terms(const ElasticBody& body, std::span<const Vec3> positio
     for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
       const ElementSource source = find_source(body, e, positions, rotations[e]);
       store_gradients(source, shares[e], &terms.gradients[16 * e]);
-      if (!stresses.empty()) stresses[e] = weighted_stress(source);
       terms.ratios[e] = source.law.pressure_slope(source.strain.trace()) / source.law.mu;
       if (terms.ratios[e] != expected_ratio) ++different;
       if (curvature != Curvature::None)

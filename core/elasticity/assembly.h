@@ -28,11 +28,10 @@ struct StiffnessTerms {
 /// Whether the rotation's own curvature enters the matrix (statics), and with which sign (design 4.4).
 enum class Curvature { None, Signed, PositivePart };
 
-/// Terms of all elements at a state, and on the way their weighted stresses V Q sigma (as find_stresses; empty: left
-/// out), which need the same deformation gradients. shares: s per element.
+/// Terms of all elements at a state. shares: s per element.
 void find_stiffness_terms(const ElasticBody& body, std::span<const Vec3> positions,
                           std::span<const Quaternion> rotations, std::span<const double> shares, Curvature curvature,
-                          StiffnessTerms& terms, std::span<Mat3> stresses, const Threads& threads);
+                          StiffnessTerms& terms, const Threads& threads);
 
 /// The references of one mesh: made once, used for every matrix on its pattern.
 class StiffnessAssembler {

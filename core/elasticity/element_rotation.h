@@ -27,7 +27,7 @@ Quaternion find_rotation(const Mat3& A, const Quaternion& guess) noexcept;
 /// Rotation Q that carries the rest tetrahedron onto the deformed one with least squared distance, eq. (3).
 ///
 /// rest, deformed: 4 nodes, m, same order. Any finite input gives a proper rotation; ties go to the one nearest
-/// `guess`.
+/// `guess`. The scalar reference: rotations of a mesh are found by element_moment and find_rotations.
 Quaternion find_element_rotation(const TetNodes& rest, const TetNodes& deformed, const Quaternion& guess) noexcept;
 
 /// A = sum (x_i - c)(X_i - c0)^T of eq. (3), m^2.

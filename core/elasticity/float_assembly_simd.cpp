@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/elasticity/float_assembly.h"
+#include "core/elasticity/short_vectors_simd.h"
 
 namespace softreel {
 namespace {
@@ -13,9 +14,9 @@ namespace {
 constexpr std::int64_t kRowGrain = 128;
 
 /// A row of a block, or a gradient, with a fourth lane that is not used. Blocks are sums of short rows, not batches, so
-/// the lanes are those of one row (GNU vectors, for their shuffles, which std::experimental::simd does not have).
-typedef float Row __attribute__((vector_size(16)));
-typedef float UnalignedRow __attribute__((vector_size(16), aligned(4), may_alias));
+/// the lanes are those of one row.
+using Row = detail::FourFloats;
+using UnalignedRow = detail::FourFloatsAnywhere;
 
 using Rows = std::array<Row, 3>;
 

@@ -3,7 +3,12 @@
 ///
 /// Bound: an element reads 120 bytes of rest shape, 48 of rotation, share and places, its nodes from cache, and writes
 /// 64 bytes; about 350 multiplies and adds, 8 to 10 ns in four lanes of AVX2. One under tension that the step must know
-/// of takes 800 more, with 24 divisions and 24 roots, and 48 bytes.
+/// of takes 800 more, with 24 divisions and 24 roots, and 48 bytes; one that is damped 170 more.
+///
+/// Damping of stiffness sees the strain rate D = sym(Q^T grad v). With F = Q U, Q^T grad v = W U + U', where W is how
+/// fast Q turns: of a stretched element D holds sym(W U) beside the rate U' of its stretch, and would brake what turns
+/// rigidly, in steps however short. So sym(W U) of the velocities before the step is taken off D. The change of W over
+/// the step stays in it, an error of first order in the step: v is solved for, with stiffness of fixed rotations.
 #pragma once
 
 #include <cstdint>
@@ -67,6 +72,8 @@ struct StepSource {
   double kept_change = -1;
   /// Pa s, per lane of the body's batches: find_tension_limits. Empty: no curvatures.
   std::span<const double> tension_limits = {};
+  /// Per node, m/s: how elements turn with these velocities, those at the step's start, is not damped. Empty: all is.
+  std::span<const Vec3> turning_velocities = {};
 };
 
 /// Fills `terms`; the vector twin of find_stiffness_terms, find_stresses and the product with K.

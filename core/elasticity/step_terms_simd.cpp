@@ -7,6 +7,7 @@
 
 #include "core/elasticity/batch_tension.h"
 #include "core/elasticity/lane_source.h"
+#include "core/elasticity/short_vectors_simd.h"
 
 namespace softreel {
 namespace {
@@ -18,9 +19,10 @@ using Vector = detail::Vector3<Lanes>;
 using Matrix = detail::Matrix9<Lanes>;
 using Symmetric = detail::Symmetric3<Lanes>;
 
-/// Lanes of one element's (x y z r), for the shuffles that std::experimental::simd does not have.
-typedef double Four __attribute__((vector_size(32)));
-typedef float FourFloats __attribute__((vector_size(16)));
+/// One element's (x y z r).
+using Four = detail::FourDoubles;
+using detail::FourFloats;
+using detail::FourRows;
 
 /// Four quantities of four elements each, as four elements' four quantities.
 [[gnu::always_inline]] inline std::array<Four, 4> transposed(const Four& a, const Four& b, const Four& c,
@@ -51,6 +53,49 @@ struct Stress {
 /// Q^T G, symmetric part.
 [[gnu::always_inline]] inline Symmetric find_strain(const Matrix& rotation, const Matrix& gradient) {
   return detail::symmetric_part(detail::transposed_product(rotation, gradient));
+}
+
+/// a x b for rows of 3x3 matrices.
+[[gnu::always_inline]] inline Vector cross(const Lanes* a, const Lanes* b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+[[gnu::always_inline]] inline Lanes dot(const Lanes* a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// sym(W A) for the W = [w]x by which Q^T G = W A + a symmetric matrix, A = Q^T F: (tr(A) I - A) w is twice the axial
+/// vector of Q^T G. Zero where the element is inverted, or so flat that its turning is not known well.
+[[gnu::always_inline]] inline Symmetric find_turning(const Matrix& rotation, const Matrix& F, const Matrix& G) {
+  constexpr double kFlat = 1e-3;  // of the cube of the trace; stretched by 20 at constant volume: 0.02
+  const Matrix A = detail::transposed_product(rotation, F), spin = detail::transposed_product(rotation, G);
+  const Lanes trace = A[0] + A[4] + A[8];
+  Matrix B;
+  for (std::size_t k = 0; k < 9; ++k) B[k] = -A[k];
+  for (const std::size_t k : {0, 4, 8}) B[k] += trace;
+  const Vector bc = cross(&B[3], &B[6]), ca = cross(&B[6], &B[0]), ab = cross(&B[0], &B[3]);
+  const Lanes determinant = dot(&B[0], bc);
+  const Vector twice{spin[7] - spin[5], spin[2] - spin[6], spin[3] - spin[1]};
+  const auto known = determinant > Lanes(kFlat) * (trace * trace * trace) && dot(&A[0], cross(&A[3], &A[6])) > Lanes(0);
+  Lanes inverse(0);
+  where(known, inverse) = Lanes(1) / determinant;
+  Vector w;
+  for (std::size_t k = 0; k < 3; ++k) w[k] = inverse * (twice[0] * bc[k] + twice[1] * ca[k] + twice[2] * ab[k]);
+  Matrix WA;
+  for (std::size_t c = 0; c < 3; ++c) {
+    WA[c] = w[1] * A[6 + c] - w[2] * A[3 + c];
+    WA[3 + c] = w[2] * A[c] - w[0] * A[6 + c];
+    WA[6 + c] = w[0] * A[3 + c] - w[1] * A[c];
+  }
+  return detail::symmetric_part(WA);
+}
+
+/// Takes off the stress what its damping of `damping` seconds makes of mere turning.
+[[gnu::always_inline]] inline void leave_turning_undamped(const ElementBatch& batch, const Symmetric& turning,
+                                                          const Lanes& damping, Stress& stress) {
+  const Lanes two_mu = load(batch.mu) + load(batch.mu), mean = stress.slope * detail::trace(turning);
+  for (std::size_t k = 0; k < 6; ++k) stress.value[k] -= damping * (two_mu * turning[k]);
+  for (const std::size_t k : {0, 3, 5}) stress.value[k] -= damping * mean;
 }
 
 /// Lanes where a kappa_k may exceed `least`: by a bound on the sum of two principal strains that is sharp where two of
@@ -102,30 +147,29 @@ using NodeVectors = std::array<Vector, 4>;
 }
 
 /// True if x y z of the vectors change by more than the root of `kept` of their length, or r by anything.
-[[gnu::always_inline]] inline bool changes(const std::array<FourFloats, 4>& from, const std::array<FourFloats, 4>& to,
-                                           float kept) {
+[[gnu::always_inline]] inline bool changes(const FourRows& from, const FourRows& to, float kept) {
   FourFloats change{}, size{};
   for (std::size_t k = 0; k < 4; ++k) {
-    const FourFloats difference = to[k] - from[k];
+    const FourFloats difference = to.rows[k] - from.rows[k];
     change += difference * difference;
-    size += to[k] * to[k];
+    size += to.rows[k] * to.rows[k];
   }
   return !(change[0] + change[1] + change[2] <= kept * (size[0] + size[1] + size[2]) && change[3] == 0);
 }
 
 /// Replaces the gradients of the batch's elements that change; true if there are any. gradients: of the first of them.
-/// kept: square of StepSource::kept_change; negative: all are replaced.
+/// They start at a multiple of 16 bytes. kept: square of StepSource::kept_change; negative: all are replaced.
 [[gnu::always_inline]] inline bool store_gradients(const NodeVectors& g, const Lanes& ratio, float kept,
                                                    float* gradients) {
-  std::array<std::array<FourFloats, 4>, kElementLanes> elements;
+  std::array<FourRows, kElementLanes> elements;
   for (std::size_t k = 0; k < 4; ++k) {
     const std::array<Four, 4> rows = transposed(as_four(g[k][0]), as_four(g[k][1]), as_four(g[k][2]), as_four(ratio));
     for (std::size_t lane = 0; lane < kElementLanes; ++lane)
-      elements[lane][k] = __builtin_convertvector(rows[lane], FourFloats);
+      elements[lane].rows[k] = __builtin_convertvector(rows[lane], FourFloats);
   }
   bool any = false;
   for (std::size_t lane = 0; lane < kElementLanes; ++lane) {
-    auto& stored = *reinterpret_cast<std::array<FourFloats, 4>*>(gradients + 16 * lane);
+    auto& stored = *reinterpret_cast<FourRows*>(gradients + 16 * lane);
     if (kept >= 0 && !changes(stored, elements[lane], kept)) continue;
     stored = elements[lane];
     any = true;
@@ -199,7 +243,8 @@ class StoredCurvatures {
   bool nonzero_ = false;
 };
 
-/// Takes the forces of the first `elements` lanes off the slab's sums, in the order of elements.
+/// Takes the forces of the first `elements` lanes off the slab's sums, in the order of elements. The sums start at a
+/// multiple of 32 bytes.
 [[gnu::always_inline]] inline void subtract_forces(const NodeVectors& f, std::size_t elements,
                                                    const std::uint16_t* places, double* sums) {
   std::array<std::array<Four, 4>, 4> rows;
@@ -207,7 +252,8 @@ class StoredCurvatures {
     rows[k] = transposed(as_four(f[k][0]), as_four(f[k][1]), as_four(f[k][2]), Four{});
   for (std::size_t lane = 0; lane < elements; ++lane)
     for (std::size_t k = 0; k < 4; ++k)
-      *reinterpret_cast<Four*>(sums + std::size_t{4} * places[kElementLanes * k + lane]) -= rows[k][lane];
+      *reinterpret_cast<detail::FourStoredDoubles*>(sums + std::size_t{4} * places[kElementLanes * k + lane]) -=
+          rows[k][lane];
 }
 
 /// kOffsets: there are offsets.
@@ -228,13 +274,17 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
     const ElementBatch& batch = body.batches[b];
     const std::size_t first = kElementLanes * b;
     const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
-    const Lanes share = seconds * (reach + detail::find_damping<Lanes>(source, first));
+    const Lanes damping = detail::find_damping<Lanes>(source, first), share = seconds * (reach + damping);
     const Matrix F = detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned);
     const Matrix G = detail::gradient<Lanes>(batch, source.velocities, stdx::vector_aligned);
     Matrix offset_gradient{};
     if constexpr (kOffsets) offset_gradient = detail::gradient<Lanes>(batch, source.offsets, stdx::vector_aligned);
-    const Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share,
-                                                detail::find_least_tension<Lanes>(source, first, stdx::vector_aligned));
+    Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share,
+                                          detail::find_least_tension<Lanes>(source, first, stdx::vector_aligned));
+    if (!source.turning_velocities.empty() && stdx::any_of(damping > Lanes(0))) {
+      const Matrix turning = detail::gradient<Lanes>(batch, source.turning_velocities, stdx::vector_aligned);
+      leave_turning_undamped(batch, find_turning(Q, F, turning), seconds * damping, stress);
+    }
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;
     Matrix T = detail::product(Q, stress.value), scaled = Q;
     const std::size_t count = std::min(kElementLanes, elements - first);

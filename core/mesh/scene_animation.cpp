@@ -45,7 +45,7 @@ std::vector<Affine> joint_maps(const SceneMesh& mesh, const SceneNodes& nodes, c
   return maps;
 }
 
-/// What the clip says of a mesh's morph targets; of several the last, as in pose_scene.
+/// What the clip says of a mesh's morph targets; of several the last, as of a node.
 const MorphChannel* morph_channel(const SceneClip* clip, Index mesh) {
   const MorphChannel* found = nullptr;
   if (clip != nullptr)
@@ -75,22 +75,6 @@ void add(std::vector<double>& numbers, const Affine& map) {
 }
 
 }  // namespace
-
-ScenePose pose_scene(const SceneAnimation& scene, const SceneClip* clip, double seconds) {
-  ScenePose pose;
-  for (const SceneNode& node : scene.nodes) pose.nodes.push_back(node.rest);
-  for (const SceneMesh& mesh : scene.meshes) pose.morph_weights.push_back(mesh.morph_weights);
-  if (clip != nullptr) {
-    for (const NodeChannel& channel : clip->nodes)
-      pose.nodes[static_cast<std::size_t>(channel.node)] = local_at(channel, seconds);
-    for (const MorphChannel& channel : clip->morphs)
-      pose.morph_weights[static_cast<std::size_t>(channel.mesh)] = value_at(channel.weights, seconds);
-  }
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
-    if (scene.nodes[n].parent >= 0)
-      pose.nodes[n] = pose.nodes[static_cast<std::size_t>(scene.nodes[n].parent)] * pose.nodes[n];
-  return pose;
-}
 
 SceneNodes::SceneNodes(const SceneAnimation& scene, const SceneClip* clip, const std::vector<Index>& wanted)
     : scene_(scene) {

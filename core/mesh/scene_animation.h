@@ -84,15 +84,6 @@ struct SceneAnimation {
   std::vector<SceneMesh> meshes;
 };
 
-/// Where everything is at a time.
-struct ScenePose {
-  std::vector<Affine> nodes;                       ///< per node, to the scene
-  std::vector<std::vector<double>> morph_weights;  ///< per mesh
-};
-
-/// clip: null for the pose without a clip.
-ScenePose pose_scene(const SceneAnimation& scene, const SceneClip* clip, double seconds);
-
 /// Some nodes of a scene and those above them: posing them costs what they are, however many others there are.
 class SceneNodes {
  public:
@@ -101,7 +92,7 @@ class SceneNodes {
 
   /// The wanted nodes and those above them, rising.
   const std::vector<Index>& numbers() const { return numbers_; }
-  /// Their maps to the scene, in the order of numbers(): bit for bit those of pose_scene.
+  /// Their maps to the scene, in the order of numbers(): the same bits whatever others are wanted.
   std::vector<Affine> at(double seconds) const;
   /// Where one of numbers() stands among them.
   std::size_t place(Index node) const;

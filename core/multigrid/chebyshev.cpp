@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "core/base/check.h"
+#include "core/multigrid/smoother_rows.h"
 
 namespace softreel {
 namespace {

@@ -22,7 +22,8 @@ class Chebyshev final : public Smoother<Scalar> {
   void smooth(int sweeps, const NodeVector<Scalar>& b, NodeVector<Scalar>& x, const Threads& threads) override;
   std::int64_t bytes() const override;
 
-  /// Bound on the eigenvalues of D^-1 A, from the last update.
+  /// Bound on the eigenvalues of D^-1 A, from the last update: what the polynomial rests on. Asked for by tests, which
+  /// compare it with the exact one.
   double largest_eigenvalue() const { return largest_; }
 
  private:

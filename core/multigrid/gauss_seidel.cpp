@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/base/check.h"
+#include "core/multigrid/smoother_rows.h"
 
 namespace softreel {
 namespace {

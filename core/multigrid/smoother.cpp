@@ -4,6 +4,7 @@
 
 #include "core/multigrid/chebyshev.h"
 #include "core/multigrid/gauss_seidel.h"
+#include "core/multigrid/smoother_rows.h"
 
 namespace softreel {
 namespace {

@@ -6,12 +6,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <type_traits>
 
 #include "core/base/parallel.h"
 #include "core/multigrid/lattice_hierarchy.h"
 #include "core/sparse/block_kernels.h"
-#include "core/sparse/row_product_simd.h"
 
 namespace softreel {
 
@@ -47,46 +45,8 @@ class Smoother {
   virtual std::int64_t bytes() const { return static_cast<std::int64_t>(inverses_.size() * sizeof(Scalar)); }
 
  protected:
-  /// The rows of a level by plain pointers, for the inner loops.
-  struct Rows {
-    explicit Rows(const Smoother& smoother)
-        : values(smoother.matrix_.values.data()),
-          columns(smoother.level_.pattern.column_indices.data()),
-          offsets(smoother.level_.pattern.row_offsets.data()),
-          diagonal(smoother.level_.diagonal.data()),
-          inverse(smoother.inverses_.data()) {}
-
-    [[gnu::always_inline]] NodeLanes<Scalar> left_sum(std::int64_t i, const Scalar* x) const {
-      return sum(offsets[i], diagonal[i], x);
-    }
-    [[gnu::always_inline]] NodeLanes<Scalar> right_sum(std::int64_t i, const Scalar* x) const {
-      return sum(diagonal[i] + 1, offsets[i + 1], x);
-    }
-    [[gnu::always_inline]] NodeLanes<Scalar> rest_sum(std::int64_t i, const Scalar* x) const {
-      return sum(diagonal[i], offsets[i + 1], x);
-    }
-    [[gnu::always_inline]] NodeLanes<Scalar> full_sum(std::int64_t i, const Scalar* x) const {
-      return sum(offsets[i], offsets[i + 1], x);
-    }
-    [[gnu::always_inline]] NodeLanes<Scalar> sum(std::int64_t begin, std::int64_t end, const Scalar* x) const {
-      if constexpr (std::is_same_v<Scalar, float>)
-        return paired_row_product(values, columns, begin, end, x);
-      else
-        return column_major_row_product(values, columns, begin, end, x);
-    }
-    /// The fourth lane of the result is 0 whatever that of rhs.
-    [[gnu::always_inline]] NodeLanes<Scalar> solve_diagonal(std::int64_t i, const NodeLanes<Scalar>& rhs) const {
-      using Column = Eigen::Map<const NodeLanes<Scalar>>;
-      const Scalar* const column = inverse + 12 * i;
-      return Column(column) * rhs[0] + (Column(column + 4) * rhs[1] + Column(column + 8) * rhs[2]);
-    }
-
-    const Scalar* values;
-    const Index* columns;
-    const std::int64_t* offsets;
-    const std::int64_t* diagonal;
-    const Scalar* inverse;
-  };
+  /// The rows of a level, for the inner loops: core/multigrid/smoother_rows.h.
+  struct Rows;
 
   const LatticeLevel& level_;
   const BlockMatrix<Scalar>& matrix_;

@@ -123,17 +123,19 @@ std::vector<Vec3> skin_positions(const std::vector<Vec3>& rest_points, const Emb
 }
 
 std::vector<Vec3> skin_normals(const std::vector<Vec3>& rest_normals, const Embedding& embedding, const TetMesh& mesh,
-                               const std::vector<Vec3>& node_positions, const Threads& threads) {
-  CHECK(rest_normals.size() == embedding.elements.size());
+                               const std::vector<Vec3>& node_positions, const Threads& threads,
+                               std::span<const Index> points) {
+  CHECK(rest_normals.size() == (points.empty() ? embedding.elements.size() : points.size()));
   CHECK(node_positions.size() == mesh.nodes.size());
   const std::vector<Mat3> gradients = nodal_gradients(mesh, node_positions, carrying_nodes(embedding, mesh), threads);
   std::vector<Vec3> normals(rest_normals.size());
   threads.for_chunks(
       static_cast<std::int64_t>(normals.size()), kSkinningGrain, [&](std::int64_t begin, std::int64_t end) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-          const Tet& tet = mesh.tets[at(embedding.elements[i])];
+          const std::size_t point = points.empty() ? i : at(points[i]);
+          const Tet& tet = mesh.tets[at(embedding.elements[point])];
           Mat3 gradient = Mat3::Zero();
-          for (std::size_t k = 0; k < 4; ++k) gradient += embedding.weights[i][k] * gradients[at(tet[k])];
+          for (std::size_t k = 0; k < 4; ++k) gradient += embedding.weights[point][k] * gradients[at(tet[k])];
           const Vec3 normal = cofactor(gradient) * rest_normals[i];
           const double length = normal.norm();
           normals[i] =

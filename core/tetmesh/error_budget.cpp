@@ -44,6 +44,11 @@ constexpr int kErrorRounds = 40, kSingleRounds = 8;
 constexpr double kNarrower = 0.97;
 constexpr int kPatience = 12;
 
+/// Where the finest leaves are at the widest gap already, there is little to hope for: three rounds that narrow neither
+/// it nor the widest one with larger leaves by a tenth are the last.
+constexpr double kMuchNarrower = 0.9;
+constexpr int kFinestPatience = 3;
+
 /// So many base edges are tried for a count, and so many fillings on each. A filling is not to grow by more than this
 /// factor at once, nor by more than this share of what is missing: what a coarse one asks for is uncertain, and places
 /// that want several halvings come up again.
@@ -86,6 +91,11 @@ constexpr double kSampleStep = 2.0;
 /// The error at which a smooth surface takes about so many tetrahedra.
 double guess_error(double area, double tets) {
   return std::sqrt(kTetsPerSquare * area / (kBaseShare * tets)) / kBaseEdge;
+}
+
+const BoundaryGap& widest_of(const std::vector<BoundaryGap>& gaps) {
+  return *std::max_element(gaps.begin(), gaps.end(),
+                           [](const BoundaryGap& a, const BoundaryGap& b) { return width_of(a) < width_of(b); });
 }
 
 /// What filling up to a count came to on one base edge.
@@ -143,13 +153,15 @@ class Filling {
       const bool is_first = round < kFirstRounds;
       std::vector<BoundaryGap> gaps = fit(filling.stuffed, is_first ? kFirstSweeps : kSweeps,
                                           (is_first ? kFirstLimit : kEnough) * error_, samples_);
-      const std::vector<BoundaryGap> loose = filled_.find_loose_pieces(filling.stuffed);
+      const std::vector<BoundaryGap> loose = find_loose_pieces(filling);
       gaps.insert(gaps.end(), loose.begin(), loose.end());
       const bool is_certain = gaps.empty();
       if (is_certain) gaps = filled_.find_gaps(filling.stuffed, visible_, kCertain * error_, threads_);
       filling.is_kept = gaps.empty();
+      if (!gaps.empty()) filling.widest_gap = widest_of(gaps);
       const double margin = round < kSingleRounds ? 0.0 : 0.5;
-      if (!gaps.empty() && is_stuck(gaps, round)) break;
+      const bool is_measured = !gaps.empty() && !filling.stuffed.mesh.tets.empty();  // else gaps have no width
+      if (is_measured && is_stuck(gaps, filling.stuffed.mesh.nodes, round)) break;
       if (round + 1 == rounds || refine(filling.stuffed, gaps, margin)) continue;
       // Samples that no size reaches hide what lies between others.
       if (!is_certain) gaps = filled_.find_gaps(filling.stuffed, visible_, kCertain * error_, threads_);
@@ -178,7 +190,7 @@ class Filling {
       if (last) learn_yield(*last, count);
       last.reset();                  // before there are the next
       if (mendings == 0) best = {};  // what met the count is kept until something better has
-      last = find_refinement(filling.stuffed, count);
+      last = find_refinement(filling, count);
       const double width = widest(last->gaps);
       if (mendings > 0 && width > best.widest && last->loose.size() >= best.loose) break;  // it spoilt something else
       best = {std::move(filling), count, width, last->loose.size(), true};
@@ -190,15 +202,24 @@ class Filling {
   }
 
  private:
+  std::vector<BoundaryGap> find_loose_pieces(const GradedFilling& filling) const {
+    return filled_.find_loose_pieces(filling.stuffed, filling.nearest_triangles,
+                                     {params_.loose_share, params_.triangle_solids});
+  }
+
   /// Whether the widest gap has long been no narrower than before: no size mends it. The rim of a hole can be such a
-  /// gap.
-  bool is_stuck(const std::vector<BoundaryGap>& gaps, int round) {
-    const double width = widest(gaps);
+  /// gap; others, where leaves can still be halved, may go on getting narrower beside it.
+  bool is_stuck(const std::vector<BoundaryGap>& gaps, const std::vector<Vec3>& nodes, int round) {
+    const double width = widest(gaps), reachable = widest_reachable(octree_, gaps, nodes);
+    const bool is_narrower = width < kMuchNarrower * before_ || reachable < kMuchNarrower * reachable_before_;
+    vain_rounds_ = width > reachable && !is_narrower ? vain_rounds_ + 1 : 0;
+    before_ = width;
+    reachable_before_ = reachable;
     if (width < kNarrower * narrowest_) {
       narrowest_ = width;
       narrowest_round_ = round;
     }
-    return round - narrowest_round_ > kPatience;
+    return round - narrowest_round_ > kPatience || vain_rounds_ >= kFinestPatience;
   }
 
   /// What is to be refined of a filling on the way to a count; kept to do it over where it takes too many tetrahedra.
@@ -213,7 +234,7 @@ class Filling {
   /// Fits, and lists the gaps. Far from the count a short fit to some of the samples will do, and gaps below the error
   /// are let be: they want another base edge. Where the count is met, what is much wider than the others is left to
   /// mend.
-  Refinement find_refinement(StuffedMesh& stuffed, double count) {
+  Refinement find_refinement(GradedFilling& filling, double count) {
     const double share = count / params_.tets, error = base_edge_ / kBaseEdge;
     const bool is_near = share >= kNearShare, is_met = share >= 1 - kCountTolerance;
     const double wide = narrowest_ < 1e300 ? narrowest_ : error;
@@ -222,10 +243,10 @@ class Filling {
                          : narrowest_ < 1e300 ? kAhead * wide
                                               : 0;
     Refinement found{octree_, {}, {}, count};
-    found.gaps = fit(stuffed, kCountSweeps, limit, thin_samples(count));
+    found.gaps = fit(filling.stuffed, kCountSweeps, limit, thin_samples(count));
     std::stable_sort(found.gaps.begin(), found.gaps.end(),
                      [](const BoundaryGap& a, const BoundaryGap& b) { return width_of(a) > width_of(b); });
-    if (is_near) found.loose = filled_.find_loose_pieces(stuffed);
+    if (is_near) found.loose = find_loose_pieces(filling);
     const double next = std::min(kGrowth * share, share + kNearer * (1 - share));
     found.added = (is_met ? kMendingShare : next) * params_.tets - count;
     found.added = count > 0 ? found.added / yield_ : 1e300;
@@ -313,6 +334,9 @@ class Filling {
   double narrowest_ = 1e300;  ///< for an error: the least of the widest gaps, and the round it was met in; for a
                               ///< count: of those that were refined
   int narrowest_round_ = 0;
+  double before_ = 1e300;            ///< the widest gap of the round before
+  double reachable_before_ = 1e300;  ///< of those where leaves could be halved
+  int vain_rounds_ = 0;              ///< on end, that narrowed neither though the widest gap has the finest leaves
   LatticeFrame frame_;
   GradedOctree octree_;
   SurfaceMesh visible_;  ///< positions and triangles; without what lies inside where pieces overlap

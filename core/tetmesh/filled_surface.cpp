@@ -6,12 +6,10 @@
 #include "core/tetmesh/boundary_mending.h"
 #include "core/tetmesh/farthest_point.h"
 #include "core/tetmesh/hidden_surface.h"
+#include "core/tetmesh/mesh_pieces.h"
 
 namespace softreel {
 namespace {
-
-/// Pieces of at most this share of the elements are loose.
-constexpr double kLooseShare = 0.02;
 
 SurfaceMesh bare(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
   SurfaceMesh mesh;
@@ -76,16 +74,20 @@ std::vector<BoundaryGap> FilledSurface::find_gaps(const StuffedMesh& stuffed, co
   return gaps;
 }
 
-std::vector<BoundaryGap> FilledSurface::find_loose_pieces(const StuffedMesh& stuffed) const {
+std::vector<BoundaryGap> FilledSurface::find_loose_pieces(const StuffedMesh& stuffed,
+                                                          const std::vector<Index>& nearest_triangles,
+                                                          const LooseRule& rule) const {
   const TetMesh& mesh = stuffed.mesh;
   const std::vector<Index> pieces = face_connected_pieces(mesh);
   if (pieces.empty()) return {};
   std::vector<Index> counts(at(*std::max_element(pieces.begin(), pieces.end()) + 1), 0);
   for (const Index piece : pieces) ++counts[at(piece)];
   if (counts.size() == 1) return {};
+  const std::vector<bool> is_main = find_main_pieces(stuffed, nearest_triangles, pieces, rule.triangle_solids);
   std::vector<BoundaryGap> gaps;
   for (const BoundaryFace& face : find_surface_faces(stuffed)) {
-    if (counts[at(pieces[at(face.element)])] > kLooseShare * static_cast<double>(pieces.size())) continue;
+    const std::size_t piece = at(pieces[at(face.element)]);
+    if (is_main[piece] || counts[piece] > rule.most_share * static_cast<double>(pieces.size())) continue;
     const Vec3& p = mesh.nodes[at(face.nodes[0])];
     gaps.push_back({tree().nearest(p).point, p, face.nodes});
   }

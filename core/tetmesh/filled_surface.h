@@ -14,6 +14,12 @@
 
 namespace softreel {
 
+/// Which pieces of a filling ought to hang together with another.
+struct LooseRule {
+  double most_share;                          ///< of the elements; larger ones are let be
+  const std::vector<Index>& triangle_solids;  ///< as of find_main_pieces
+};
+
 /// Borrows the surface. Reading is thread-safe.
 class FilledSurface {
  public:
@@ -39,9 +45,10 @@ class FilledSurface {
   std::vector<BoundaryGap> find_gaps(const StuffedMesh& stuffed, const SurfaceMesh& visible, double limit,
                                      const Threads& threads) const;
 
-  /// The boundary faces of small pieces beside the main ones: these hang by necks that are thinner than the
-  /// tetrahedra, and are gaps as wide as they are.
-  std::vector<BoundaryGap> find_loose_pieces(const StuffedMesh& stuffed) const;
+  /// The boundary faces of pieces of at most a share of the elements, beside the main ones (find_main_pieces): these
+  /// hang by necks that are thinner than the tetrahedra, and are gaps as wide as they are.
+  std::vector<BoundaryGap> find_loose_pieces(const StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles,
+                                             const LooseRule& rule) const;
 
  private:
   SurfaceMesh without_caps(const std::vector<Vec3>& nodes, const std::vector<Triangle>& faces, double limit,

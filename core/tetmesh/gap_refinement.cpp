@@ -57,6 +57,19 @@ double widest(const std::vector<BoundaryGap>& gaps) {
   return width;
 }
 
+double widest_reachable(const GradedOctree& octree, const std::vector<BoundaryGap>& gaps,
+                        const std::vector<Vec3>& nodes) {
+  double width = 0;
+  std::vector<Wish> wishes;
+  for (const BoundaryGap& gap : gaps) {
+    if (!(width_of(gap) > width)) continue;
+    wishes.clear();
+    wish_at(octree, gap, nodes, 1, wishes);
+    if (!wishes.empty()) width = width_of(gap);
+  }
+  return width;
+}
+
 bool refine_gaps(GradedOctree& octree, const std::vector<BoundaryGap>& gaps, const std::vector<Vec3>& nodes,
                  double margin) {
   std::vector<Wish> wishes;

@@ -16,8 +16,12 @@ double width_of(const BoundaryGap& gap);
 /// The largest of them; 0 if there is none.
 double widest(const std::vector<BoundaryGap>& gaps);
 
-/// Halves the largest leaves at each gap, and those within `margin` of their width. nodes: of the boundary that has the
-/// gaps. False if there is none that may be halved.
+/// The largest of those at which leaves may be halved; nodes: of the boundary that has the gaps.
+double widest_reachable(const GradedOctree& octree, const std::vector<BoundaryGap>& gaps,
+                        const std::vector<Vec3>& nodes);
+
+/// Halves the largest leaves at each gap, and those within `margin` of their width. False if there is none that may be
+/// halved.
 bool refine_gaps(GradedOctree& octree, const std::vector<BoundaryGap>& gaps, const std::vector<Vec3>& nodes,
                  double margin);
 

@@ -1,7 +1,9 @@
 #include "core/tetmesh/mesh_pieces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -11,6 +13,9 @@
 
 namespace softreel {
 namespace {
+
+/// Crumbs of more than this share of the volume are not dropped without a warning.
+constexpr double kMuchVolume = 0.01;
 
 /// Pieces of a mesh with a manifold boundary, where elements that share a node are joined through faces too.
 struct Pieces {
@@ -63,11 +68,60 @@ std::vector<Index> main_pieces(const StuffedMesh& stuffed, const std::vector<Ind
   return main;
 }
 
+struct Crumbs {
+  std::vector<bool> is_crumb;  ///< per piece
+  Index count = 0, tets = 0;   ///< of the crumbs
+  Index loose = 0;             ///< pieces that are neither main ones nor crumbs
+  double share = 0;            ///< of the volume of all pieces
+};
+
+Crumbs find_crumbs(const StuffedMesh& stuffed, const std::vector<Index>& main, const Pieces& pieces,
+                   const CrumbLimits& limits) {
+  const double cell = std::pow(stuffed.mesh.lattice.spacing, 3);
+  const double all = std::accumulate(pieces.volumes.begin(), pieces.volumes.end(), 0.0);
+  std::vector<bool> is_main(pieces.volumes.size(), false);
+  for (const Index piece : main)
+    if (piece >= 0) is_main[at(piece)] = true;
+  Crumbs crumbs{std::vector<bool>(pieces.volumes.size(), false)};
+  for (std::size_t p = 0; p < pieces.volumes.size(); ++p) {
+    if (is_main[p]) continue;
+    if (pieces.volumes[p] < cell && pieces.sizes[p] < limits.tets) {
+      crumbs.is_crumb[p] = true;
+      ++crumbs.count;
+      crumbs.tets += pieces.sizes[p];
+      crumbs.share += pieces.volumes[p] / all;
+    } else {
+      ++crumbs.loose;
+    }
+  }
+  if (!(crumbs.share > limits.share)) return crumbs;
+  return {std::vector<bool>(pieces.volumes.size(), false), 0, 0, crumbs.loose + crumbs.count, 0};
+}
+
 void remove_pieces(StuffedMesh& stuffed, const Pieces& pieces, const std::vector<bool>& removed) {
   std::size_t kept = 0;
   for (std::size_t e = 0; e < stuffed.mesh.tets.size(); ++e)
     if (!removed[at(pieces.tet_pieces[e])]) stuffed.mesh.tets[kept++] = stuffed.mesh.tets[e];
   stuffed.mesh.tets.resize(kept);
+}
+
+/// Per piece the solid that most of its nodes are near, -1 for none: where solids touch, some are near another.
+std::vector<Index> nearest_solids(const StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles,
+                                  const std::vector<Index>& tet_pieces, const std::vector<Index>& triangle_solids,
+                                  std::size_t count) {
+  std::map<std::array<Index, 2>, Index> nodes;  // of piece and solid
+  for (std::size_t e = 0; e < tet_pieces.size(); ++e)
+    for (const Index node : stuffed.mesh.tets[e]) {
+      const Index triangle = nearest_triangles[at(stuffed.lattice_nodes[at(node)])];
+      if (triangle >= 0 && triangle_solids[at(triangle)] >= 0) ++nodes[{tet_pieces[e], triangle_solids[at(triangle)]}];
+    }
+  std::vector<Index> solids(count, -1), most(count, 0);
+  for (const auto& [pair, number] : nodes)
+    if (number > most[at(pair[0])]) {
+      most[at(pair[0])] = number;
+      solids[at(pair[0])] = pair[1];
+    }
+  return solids;
 }
 
 /// An edge length with which a part that vanished should appear: 2 V / A is the thickness of a plate, the radius of a
@@ -79,35 +133,51 @@ double needed_edge(const SurfacePart& part, double edge) {
 
 }  // namespace
 
-void drop_crumbs(StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles, const SurfaceParts& parts,
-                 const std::string& name, const Log& log) {
+Index drop_crumbs(StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles, const SurfaceParts& parts,
+                  const CrumbLimits& limits, const std::string& name, const Log& log) {
   const Pieces pieces = find_pieces(stuffed.mesh);
-  if (pieces.volumes.size() <= 1) return;
-  std::vector<bool> is_main(pieces.volumes.size(), false), removed(pieces.volumes.size(), false);
-  for (const Index piece : main_pieces(stuffed, nearest_triangles, parts, pieces))
-    if (piece >= 0) is_main[at(piece)] = true;
-  const double cell = std::pow(stuffed.mesh.lattice.spacing, 3);
-  Index crumbs = 0, crumb_tets = 0, loose = 0;
-  for (std::size_t p = 0; p < is_main.size(); ++p) {
-    if (is_main[p]) continue;
-    if (pieces.volumes[p] < cell) {
-      removed[p] = true;
-      ++crumbs;
-      crumb_tets += pieces.sizes[p];
-    } else {
-      ++loose;
-    }
+  const auto count = static_cast<Index>(pieces.volumes.size());
+  if (count <= 1) return count;
+  const Crumbs crumbs = find_crumbs(stuffed, main_pieces(stuffed, nearest_triangles, parts, pieces), pieces, limits);
+  if (crumbs.count > 0) {
+    remove_pieces(stuffed, pieces, crumbs.is_crumb);
+    const std::string line =
+        fmt::format("body '{}': removed {} loose crumb{} ({} tetrahedra, each crumb smaller than a lattice cell)", name,
+                    crumbs.count, crumbs.count == 1 ? "" : "s", crumbs.tets);
+    if (crumbs.share > kMuchVolume)
+      log.warn(fmt::format("{}: {:.0f} % of the volume. Use a smaller edge or more tets.", line, 100 * crumbs.share));
+    else
+      log.info(line);
   }
-  if (crumbs > 0) {
-    remove_pieces(stuffed, pieces, removed);
-    log.info(fmt::format("body '{}': removed {} loose crumb{} ({} tetrahedra, each crumb smaller than a lattice cell)",
-                         name, crumbs, crumbs == 1 ? "" : "s", crumb_tets));
-  }
-  if (loose > 0)
+  if (crumbs.loose > 0)
     log.warn(
         fmt::format("body '{}': parts thinner than the lattice (edge {:.4g} m) fell apart: {} loose piece{} beside "
                     "the main ones. Use a smaller edge or more tets if they should hang together.",
-                    name, stuffed.mesh.lattice.spacing, loose, loose == 1 ? "" : "s"));
+                    name, stuffed.mesh.lattice.spacing, crumbs.loose, crumbs.loose == 1 ? "" : "s"));
+  return count - crumbs.count;
+}
+
+std::vector<bool> find_main_pieces(const StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles,
+                                   const std::vector<Index>& tet_pieces, const std::vector<Index>& triangle_solids) {
+  std::vector<Index> sizes;
+  for (const Index piece : tet_pieces) {
+    if (at(piece) >= sizes.size()) sizes.resize(at(piece) + 1, 0);
+    ++sizes[at(piece)];
+  }
+  const std::vector<Index> solids =
+      triangle_solids.empty() ? std::vector<Index>(sizes.size(), 0)
+                              : nearest_solids(stuffed, nearest_triangles, tet_pieces, triangle_solids, sizes.size());
+  std::vector<Index> main;  // per solid
+  for (std::size_t p = 0; p < sizes.size(); ++p) {
+    if (solids[p] < 0) continue;
+    if (at(solids[p]) >= main.size()) main.resize(at(solids[p]) + 1, -1);
+    Index& best = main[at(solids[p])];
+    if (best < 0 || sizes[p] > sizes[at(best)]) best = static_cast<Index>(p);
+  }
+  std::vector<bool> is_main(sizes.size(), false);
+  for (const Index piece : main)
+    if (piece >= 0) is_main[at(piece)] = true;
+  return is_main;
 }
 
 void require_all_parts(const StuffedMesh& stuffed, const std::vector<Index>& nearest_triangles,

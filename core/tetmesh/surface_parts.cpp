@@ -25,6 +25,7 @@ std::vector<Index> first_groups(const SurfaceMesh& surface) {
 void measure_parts(const SurfaceMesh& surface, SurfaceParts& found) {
   Bounds open;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (found.triangle_parts[t] < 0) continue;
     SurfacePart& part = found.parts[at(found.triangle_parts[t])];
     for (const Index v : surface.triangles[t]) {
       part.box.add(surface.positions[at(v)]);
@@ -32,6 +33,7 @@ void measure_parts(const SurfaceMesh& surface, SurfaceParts& found) {
     }
   }
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (found.triangle_parts[t] < 0) continue;
     SurfacePart& part = found.parts[at(found.triangle_parts[t])];
     const Vec3 center = part.open ? open.center() : part.box.center();
     std::array<Vec3, 3> x;
@@ -126,6 +128,33 @@ SurfaceParts find_parts(const SurfaceMesh& surface) {
     found.parts[p].name = fmt::format("part {} of {} ({}{} triangles)", p + 1, found.parts.size(),
                                       group.empty() ? "" : "group '" + group + "', ", found.parts[p].triangles);
   }
+  return found;
+}
+
+SurfaceParts find_shells(const SurfaceMesh& surface) {
+  const std::vector<Triangle> welded = welded_triangles(surface);
+  const std::vector<HalfEdge> sides = sorted_half_edges(welded);
+  DisjointSets sets(welded.size());
+  for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
+    if (edge.size() == 2) sets.join(edge[0].triangle, edge[1].triangle);
+  });
+  SurfaceParts found;
+  std::vector<Index> number(welded.size(), -1);
+  for (std::size_t t = 0; t < welded.size(); ++t) {
+    found.triangle_parts.push_back(-1);
+    if (is_collapsed(welded[t])) continue;
+    Index& shell = number[at(sets.root(static_cast<Index>(t)))];
+    if (shell < 0) {
+      shell = static_cast<Index>(found.parts.size());
+      found.parts.emplace_back();
+    }
+    found.triangle_parts.back() = shell;
+  }
+  for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
+    if (!is_balanced(edge))
+      for (const HalfEdge& side : edge) found.parts[at(found.triangle_parts[at(side.triangle)])].open = true;
+  });
+  measure_parts(surface, found);
   return found;
 }
 

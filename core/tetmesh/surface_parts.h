@@ -39,4 +39,8 @@ Index find_sheet(const SurfaceMesh& surface, const SurfaceParts& parts);
 
 SurfaceParts find_parts(const SurfaceMesh& surface);
 
+/// The same of shells: triangles that are connected across edges which have two of them. Cubes that share no more than
+/// a corner or an edge are two. Triangles that are lines or points belong to none: -1.
+SurfaceParts find_shells(const SurfaceMesh& surface);
+
 }  // namespace softreel

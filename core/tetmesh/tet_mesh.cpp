@@ -85,6 +85,29 @@ std::vector<Triangle> boundary_faces(const TetMesh& mesh) {
   return triangles;
 }
 
+std::optional<std::array<Index, 2>> find_overlap_at_face(const TetMesh& mesh) {
+  const auto element = [](const Face& face) { return static_cast<std::size_t>(face.number / 4); };
+  // Seen from outside, the faces of elements on both sides of a face run in opposite directions.
+  const auto second_node = [&](const Face& face) {
+    const Triangle nodes = face_nodes(mesh.tets[element(face)], static_cast<std::size_t>(face.number % 4));
+    const auto least = static_cast<std::size_t>(std::min_element(nodes.begin(), nodes.end()) - nodes.begin());
+    return nodes[(least + 1) % 3];
+  };
+  const auto apex = [&](const Face& face) {
+    return mesh.tets[element(face)][static_cast<std::size_t>(face.number % 4)];
+  };
+  std::optional<std::array<Index, 2>> overlap;
+  visit_equal_faces(mesh, [&](const Face* begin, const Face* end) {
+    for (const Face* a = begin; a < end; ++a)
+      for (const Face* b = a + 1; b < end && !overlap; ++b) {
+        const bool are_copies = apex(*a) != apex(*b) && mesh.nodes[at(apex(*a))] == mesh.nodes[at(apex(*b))];
+        if (second_node(*a) == second_node(*b) && !are_copies)
+          overlap = {static_cast<Index>(element(*a)), static_cast<Index>(element(*b))};
+      }
+  });
+  return overlap;
+}
+
 std::vector<Index> face_connected_pieces(const TetMesh& mesh) {
   DisjointSets sets(mesh.tets.size());
   visit_equal_faces(mesh, [&](const Face* begin, const Face* end) {

@@ -1,6 +1,8 @@
 /// Linear tetrahedra that fill a body: nodes, elements, the lattice they were cut from, and their boundary.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "core/base/types.h"
@@ -50,5 +52,10 @@ std::vector<Triangle> boundary_faces(const TetMesh& mesh);
 /// Number of the piece of each element; elements that share a face are in one piece. Pieces are numbered from 0 in the
 /// order of their first element.
 std::vector<Index> face_connected_pieces(const TetMesh& mesh);
+
+/// The first two elements found that lie on one side of a face that they share; so do two of any three at one face.
+/// Copies of one element that differ in their fourth nodes' numbers, not places, do not count: embedded meshes have
+/// them. Elements have positive volumes.
+std::optional<std::array<Index, 2>> find_overlap_at_face(const TetMesh& mesh);
 
 }  // namespace softreel

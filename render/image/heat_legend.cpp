@@ -40,9 +40,14 @@ struct Layout {
   float letter = 0;  ///< height; 0: none is readable
 };
 
+/// Pixels; of a narrow picture less than it is high.
+float used_height(int width, int height) {
+  return std::min(static_cast<float>(height), 0.75f * static_cast<float>(width));
+}
+
 Layout lay_out(const HeatLegend& legend, const DisplayImage& image) {
   Layout l;
-  const float height = std::min(static_cast<float>(image.height), 0.75f * static_cast<float>(image.width));
+  const float height = used_height(image.width, image.height);
   l.letter = height >= kReadable ? std::max(8.0f, std::round(height / 50)) : 0.0f;
   const float unit = l.letter > 0 ? l.letter : std::max(1.0f, height / 30);
   const auto pixels = [unit](float letters) { return static_cast<int>(std::lround(letters * unit)); };
@@ -100,6 +105,10 @@ HeatLegend make_heat_legend(const std::string& quantity, double low, double high
     legend.ticks.push_back({std::clamp((value - from) / (to - from), 0.0, 1.0), fmt::format("{:.{}f}", value, digits)});
   }
   return legend;
+}
+
+bool has_legend_letters(int width, int height) {
+  return used_height(width, height) >= kReadable;
 }
 
 void draw_heat_legend(const HeatLegend& legend, DisplayImage& image) {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/base/check.h"
-
 namespace softreel {
 
 namespace {
@@ -59,17 +57,6 @@ ImageDifference compare(const DisplayImage& a, const DisplayImage& b) {
       result.worst_y = y;
     }
   return result;
-}
-
-DisplayImage difference_picture(const DisplayImage& a, const DisplayImage& b) {
-  CHECK(a.width == b.width);
-  CHECK(a.height == b.height);
-  constexpr int kAmplified = 8;
-  DisplayImage out{a.width, a.height, {}};
-  out.pixels.resize(a.pixels.size());
-  for (std::size_t k = 0; k < a.pixels.size(); ++k)
-    out.pixels[k] = static_cast<std::uint8_t>(std::min(255, kAmplified * std::abs(difference_at(a, b, k))));
-  return out;
 }
 
 }  // namespace softreel

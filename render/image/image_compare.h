@@ -17,7 +17,4 @@ struct ImageDifference {
 
 ImageDifference compare(const DisplayImage& a, const DisplayImage& b);
 
-/// A picture of |a - b|, amplified 8 times, for a person to look at. Same sizes.
-DisplayImage difference_picture(const DisplayImage& a, const DisplayImage& b);
-
 }  // namespace softreel

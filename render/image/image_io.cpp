@@ -105,14 +105,31 @@ EnvironmentImage from_display(const DisplayImage& display) {
   return image;
 }
 
+/// A small file may claim any size.
+void require_size(std::int64_t width, std::int64_t height, const std::string& path) {
+  constexpr double kMostPixels = 1 << 28;
+  if (width < 1 || height < 1 || static_cast<double>(width) * static_cast<double>(height) > kMostPixels)
+    throw unreadable_picture(path, fmt::format("its display window has {} x {} pixels", width, height),
+                             "an EXR of at most 268 million pixels");
+}
+
+/// Of the display window.
+std::pair<int, int> exr_size(const std::string& path) {
+  std::int64_t width = 0, height = 0;
+  try {
+    const Imath::Box2i full = Imf::InputFile(path.c_str()).header().displayWindow();
+    width = std::int64_t{full.max.x} - full.min.x + 1;
+    height = std::int64_t{full.max.y} - full.min.y + 1;
+  } catch (const std::exception& failure) {
+    throw unreadable_picture(path, failure.what(), "a scan-line EXR picture");
+  }
+  require_size(width, height, path);
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
 /// All of the picture, black where the file has no data; what lies beyond the picture is left out.
 Image whole_picture(Image image, const std::string& path) {
-  constexpr double kMostPixels = 1 << 28;  // a small file may claim any size
-  const double pixels = static_cast<double>(image.full_width) * image.full_height;
-  if (image.full_width < 1 || image.full_height < 1 || pixels > kMostPixels)
-    throw unreadable_picture(path,
-                             fmt::format("its display window has {} x {} pixels", image.full_width, image.full_height),
-                             "an EXR of at most 268 million pixels");
+  require_size(image.full_width, image.full_height, path);
   if (image.left == 0 && image.top == 0 && image.width == image.full_width && image.height == image.full_height)
     return image;
   Image whole{image.full_width, image.full_height, {}};
@@ -307,6 +324,16 @@ TexturePicture read_texture_picture(const std::string& path) {
     image.channels = {{"R", values}, {"G", values}, {"B", values}};
   }
   return of_numbers(from_channels(image, path));
+}
+
+std::pair<int, int> picture_size(const std::string& path) {
+  const std::string end = ending(path);
+  if (end == "hdr") return radiance_size(path);
+  if (end == "exr") return exr_size(path);
+  int width = 0, height = 0, components = 0;
+  if (stbi_info(path.c_str(), &width, &height, &components) == 0)
+    throw unreadable_picture(path, stbi_failure_reason(), "files ending in .exr, .hdr, .png, .jpg, .jpeg");
+  return {width, height};
 }
 
 EnvironmentImage read_environment(const std::string& path) {

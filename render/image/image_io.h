@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -54,6 +55,9 @@ struct TexturePicture {
 
 /// From PNG (8 and 16 bits, transparency left out), JPEG, EXR (R, G, B or Y) or HDR. Throws input_error.
 TexturePicture read_texture_picture(const std::string& path);
+
+/// Width and height of a texture or an environment, by its file's header alone. Throws input_error.
+std::pair<int, int> picture_size(const std::string& path);
 
 /// An environment from EXR, HDR, PNG or JPEG (the last two through the inverse sRGB curve). Throws input_error.
 EnvironmentImage read_environment(const std::string& path);

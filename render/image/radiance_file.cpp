@@ -21,6 +21,7 @@ namespace softreel {
 namespace {
 
 constexpr int kMostPixelsAcross = 1 << 16;
+constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 20;        // of a file whose size alone is wanted
 constexpr std::size_t kMostRadiancePixels = std::size_t{1} << 28;     // as of an EXR
 constexpr std::size_t kLeastCodedWidth = 8, kMostCodedWidth = 32767;  // of rows coded by component
 constexpr std::size_t kMostPixelsPerByte = 16;  // of such a row: two bytes a run of at most 127, four components
@@ -36,10 +37,14 @@ class RadianceReader {
  public:
   RadianceReader(const std::string& path, std::string_view bytes) : path_(path), left_(bytes) {}
 
-  EnvironmentImage read() {
+  std::pair<int, int> read_size() {
     read_header();
+    return size(line());
+  }
+
+  EnvironmentImage read() {
     EnvironmentImage image{0, 0, {}};
-    std::tie(image.width, image.height) = size(line());
+    std::tie(image.width, image.height) = read_size();
     const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     image.pixels.reserve(std::min(pixels, kMostPixelsPerByte * left_.size()));
     row_.reserve(static_cast<std::size_t>(image.width));
@@ -175,6 +180,14 @@ EnvironmentImage read_radiance(const std::string& path) {
   bytes << file.rdbuf();
   if (!file || !bytes) throw unreadable_picture(path, "it cannot be opened, or is empty", "a Radiance HDR picture");
   return decode_radiance(path, bytes.view());
+}
+
+std::pair<int, int> radiance_size(const std::string& path) {
+  std::string beginning(kMostHeaderBytes, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  beginning.resize(static_cast<std::size_t>(file.gcount()));
+  return RadianceReader(path, beginning).read_size();
 }
 
 }  // namespace softreel

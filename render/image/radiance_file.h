@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "render/scene/light.h"
 
@@ -14,5 +15,8 @@ EnvironmentImage decode_radiance(const std::string& path, std::string_view bytes
 
 /// The same from the file itself.
 EnvironmentImage read_radiance(const std::string& path);
+
+/// Width and height by the header alone, which is all that is read. Throws input_error.
+std::pair<int, int> radiance_size(const std::string& path);
 
 }  // namespace softreel

@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 
-#include "render/pathtrace/edge_lines.h"
-#include "render/pathtrace/random_walk.h"
+#include "render/pathtrace/materials/random_walk.h"
+#include "render/pathtrace/rays/edge_lines.h"
 #include "render/pathtrace/shadow_catcher.h"
 
 namespace softreel {
@@ -124,19 +124,17 @@ void PathIntegrator::catch_shadow(const RayHit& hit) {
   first_hit_.shadowed = light.shadowed;
 }
 
-void PathIntegrator::add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                                const BsdfView& view, const SampleBlock& numbers, PathScratch& scratch) {
+void PathIntegrator::add_direct(const Event& event, const SampleBlock& numbers, PathScratch& scratch) {
   // Most of the noise of glossy bodies is in the highlights of lamps: two points halve it for one more shadow ray.
-  if (bounces_ == 1 && !leaving_ && bsdf.has_highlight()) {
+  if (bounces_ == 1 && !leaving_ && event.bsdf.has_highlight()) {
     for (const Vec2f& u : sampler_.two_points(sample_, kTwoLightsBlock))
-      add_lights(bsdf, point, frame, view, numbers[kLight], u, 0.5f, scratch);
+      add_lights(event, numbers[kLight], u, 0.5f, scratch);
   } else {
-    add_lights(bsdf, point, frame, view, numbers[kLight], Vec2f(numbers[kLightU], numbers[kLightV]), 1, scratch);
+    add_lights(event, numbers[kLight], Vec2f(numbers[kLightU], numbers[kLightV]), 1, scratch);
   }
 }
 
-void PathIntegrator::add_lights(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                                const BsdfView& view, float choice, const Vec2f& u, float share, PathScratch& scratch) {
+void PathIntegrator::add_lights(const Event& event, float choice, const Vec2f& u, float share, PathScratch& scratch) {
   const LightSet& lights = *picture_.lights;
   const std::size_t rays = origin_.receiver.every_light ? lights.count() : 1;
   for (std::size_t k = 0; k < rays; ++k) {
@@ -146,33 +144,31 @@ void PathIntegrator::add_lights(const Bsdf& bsdf, const SurfacePoint& point, con
                            ? lights.sample_light(k, origin_.receiver, choice, u, light, point_like)
                            : lights.sample(origin_.receiver, choice, u, light, point_like);
     light.radiance *= share;
-    if (found) add_light(bsdf, point, frame, view, light, point_like, scratch.light_rays);
+    if (found) add_light(event, light, point_like, scratch.light_rays);
   }
 }
 
-void PathIntegrator::add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                               const BsdfView& view, const LightSample& light, bool point_like,
+void PathIntegrator::add_light(const Event& event, const LightSample& light, bool point_like,
                                std::vector<LightRay>& light_rays) {
   if (picture_.direct_light == DirectLight::Scattering) return;
-  const Vec3f towards = frame.to_local(light.direction);
-  const BsdfValue value = leaving_ ? bsdf.evaluate_leaving(towards) : bsdf.evaluate(view, towards);
+  const Vec3f towards = event.frame.to_local(light.direction);
+  const BsdfValue value = leaving_ ? event.bsdf.evaluate_leaving(towards) : event.bsdf.evaluate(event.view, towards);
   if (value.value.maxCoeff() <= 0) return;
   const bool weighed = !point_like && picture_.direct_light == DirectLight::Weighed;
   const float weight = weighed ? power_heuristic(light.pdf, value.pdf) : 1.0f;
   const bool through = towards.z() < 0;
-  const Ray shadow = shadow_ray(point, through, light, ray_.time);
+  const Ray shadow = shadow_ray(event.point, through, light, ray_.time);
   const Vec3f arriving = light.radiance.cwiseProduct(transmittance(through ? behind_ : before_, shadow.max_distance));
   light_rays.push_back({shadow, part_of(value.value.cwiseProduct(arriving) * (weight / light.pdf)), number_});
 }
 
-bool PathIntegrator::scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame,
-                             const BsdfView& view, const SampleBlock& numbers, PathScratch& scratch) {
+bool PathIntegrator::scatter(const Event& event, const SampleBlock& numbers, PathScratch& scratch) {
   BsdfSample next;
-  if (!bsdf.sample(view, numbers[kSide], Vec2f(numbers[kBsdfU], numbers[kBsdfV]), next)) return false;
+  if (!event.bsdf.sample(event.view, numbers[kSide], Vec2f(numbers[kBsdfU], numbers[kBsdfV]), next)) return false;
   throughput_ = throughput_.cwiseProduct(next.weight);
   if (!(throughput_.maxCoeff() > 0)) return false;
-  follow(next, point, frame);
-  if (next.subsurface && !scatter_inside(bsdf, point, next.direction, scratch)) return false;
+  follow(next, event.point, event.frame);
+  if (next.subsurface && !scatter_inside(event.bsdf, event.point, next.direction, scratch)) return false;
   return bounces_ < kRouletteStart || survives_roulette(numbers[kRoulette]);
 }
 
@@ -207,7 +203,7 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   const ShadingFrame frame(out.shading_normal);
   origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light, ray_.time};
   leaving_ = true;
-  add_direct(bsdf, out, frame, {}, leaving_numbers, scratch);
+  add_direct({bsdf, out, frame, {}}, leaving_numbers, scratch);
   leaving_ = false;
   BsdfSample next;
   next.direction = cosine_hemisphere(Vec2f(leaving_numbers[kBsdfU], leaving_numbers[kBsdfV]));
@@ -258,8 +254,9 @@ void PathIntegrator::arrive(const RayHit& hit, PathScratch& scratch) {
   if (!(view.o.z() > 0)) return;  // a triangle without area has no normal
   const bool every_light = bounces_ == 1 && picture_.lights->count() <= kFewLights;
   origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, ray_.time};
-  if (bsdf.has_smooth_part()) add_direct(bsdf, point, frame, view, numbers, scratch);
-  lives_on_ = scatter(bsdf, point, frame, view, numbers, scratch);
+  const Event event{bsdf, point, frame, view};
+  if (bsdf.has_smooth_part()) add_direct(event, numbers, scratch);
+  lives_on_ = scatter(event, numbers, scratch);
   if (lives_on_ && picture_.has_textures)
     cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
 }

@@ -9,14 +9,14 @@
 #include <optional>
 #include <vector>
 
-#include "render/pathtrace/bsdf.h"
-#include "render/pathtrace/colored_surface.h"
 #include "render/pathtrace/direct_light.h"
-#include "render/pathtrace/light_set.h"
-#include "render/pathtrace/ray_cone.h"
-#include "render/pathtrace/sampler.h"
-#include "render/pathtrace/scene_rays.h"
-#include "render/pathtrace/surface_point.h"
+#include "render/pathtrace/lights/light_set.h"
+#include "render/pathtrace/materials/bsdf.h"
+#include "render/pathtrace/materials/colored_surface.h"
+#include "render/pathtrace/rays/ray_cone.h"
+#include "render/pathtrace/rays/sampler.h"
+#include "render/pathtrace/rays/scene_rays.h"
+#include "render/pathtrace/rays/surface_point.h"
 #include "render/scene/ground_mesh.h"
 
 namespace softreel {
@@ -101,6 +101,15 @@ class PathIntegrator {
  private:
   using LightRay = PathScratch::LightRay;
 
+  /// A place where light is scattered. view: of `bsdf` from where the path comes; not asked for while light leaves a
+  /// body.
+  struct Event {
+    const Bsdf& bsdf;
+    const SurfacePoint& point;
+    const ShadingFrame& frame;
+    const BsdfView& view;
+  };
+
   const Bsdf& bsdf_at(const RayHit& hit, SurfacePoint& point, std::optional<Bsdf>& colored);
   void record_first_hit(const RayHit& hit, const SurfacePoint& point, const Bsdf& bsdf);
   /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
@@ -109,17 +118,13 @@ class PathIntegrator {
   Vec3f part_of(const Vec3f& radiance) const;
   /// What the camera sees of the shadow catcher: nothing but its alpha.
   void catch_shadow(const RayHit& hit);
-  /// Light sampling at a point. view: of `bsdf` from where the path comes; not asked for while light leaves a body.
-  void add_direct(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
-                  const SampleBlock& numbers, PathScratch& scratch);
+  /// Light sampling.
+  void add_direct(const Event& event, const SampleBlock& numbers, PathScratch& scratch);
   /// Of every light, or of one of them. share: of the light that counts.
-  void add_lights(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
-                  float choice, const Vec2f& u, float share, PathScratch& scratch);
-  void add_light(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
-                 const LightSample& light, bool point_like, std::vector<LightRay>& light_rays);
+  void add_lights(const Event& event, float choice, const Vec2f& u, float share, PathScratch& scratch);
+  void add_light(const Event& event, const LightSample& light, bool point_like, std::vector<LightRay>& light_rays);
   /// Continues the path; false where it ends.
-  bool scatter(const Bsdf& bsdf, const SurfacePoint& point, const ShadingFrame& frame, const BsdfView& view,
-               const SampleBlock& numbers, PathScratch& scratch);
+  bool scatter(const Event& event, const SampleBlock& numbers, PathScratch& scratch);
   /// Takes a sampled direction.
   void follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame);
   /// From a subsurface sample at `point`, which led `inward` (local to the triangle's own normal), through the body to

@@ -10,10 +10,10 @@
 #include "core/base/check.h"
 #include "core/base/error.h"
 #include "render/pathtrace/adaptive_sampling.h"
-#include "render/pathtrace/albedo_cache.h"
-#include "render/pathtrace/camera_rays.h"
+#include "render/pathtrace/materials/albedo_cache.h"
 #include "render/pathtrace/picture_hash.h"
 #include "render/pathtrace/pixel_sampling.h"
+#include "render/pathtrace/rays/camera_rays.h"
 #include "render/scene/camera_frame.h"
 
 namespace softreel {
@@ -29,14 +29,17 @@ void check_meshes(const Scene& scene) {
   for (const MotionMesh& mesh : scene.meshes) {
     CHECK(!mesh.times.empty());
     if (mesh.lines && !mesh.lines->drawn.empty()) CHECK(mesh.lines->drawn.size() == mesh.triangles.size());
+    if (!mesh.normal_triangles.empty()) CHECK(mesh.normal_triangles.size() == mesh.triangles.size());
+    const MotionMesh::Time& first = mesh.times.front();
+    const std::size_t normals = mesh.normal_triangles.empty() ? first.positions.size() : first.normals.size();
     for (const MotionMesh::Time& time : mesh.times) {
-      CHECK(time.positions.size() == mesh.times.front().positions.size());
-      if (!time.normals.empty()) CHECK(time.normals.size() == time.positions.size());
-      CHECK(time.normals.empty() == mesh.times.front().normals.empty());
+      CHECK(time.positions.size() == first.positions.size());
+      if (!time.normals.empty()) CHECK(time.normals.size() == normals);
+      CHECK(time.normals.empty() == first.normals.empty());
     }
-    if (mesh.rest_positions) CHECK(mesh.rest_positions->size() == mesh.times.front().positions.size());
+    if (mesh.rest_positions) CHECK(mesh.rest_positions->size() == first.positions.size());
     for (const std::size_t count : {mesh.next_positions.size(), mesh.strain.size()})
-      if (count > 0) CHECK(count == mesh.times.front().positions.size());
+      if (count > 0) CHECK(count == first.positions.size());
   }
 }
 

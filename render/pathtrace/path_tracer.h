@@ -10,19 +10,11 @@
 #include "render/image/image.h"
 #include "render/pathtrace/direct_light.h"
 #include "render/pathtrace/picture_channels.h"
-#include "render/pathtrace/ray_scene.h"
+#include "render/pathtrace/rays/ray_scene.h"
+#include "render/scene/pixel_window.h"
 #include "render/scene/scene.h"
 
 namespace softreel {
-
-/// Part of a picture, or more than it: pixels from left to right and top to bottom, ends excluded.
-struct PixelWindow {
-  int left = 0, top = 0, right = 0, bottom = 0;  ///< all 0: the picture itself
-
-  int width() const { return right - left; }
-  int height() const { return bottom - top; }
-  friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
-};
 
 struct RenderParams {
   int width = 960, height = 540;

@@ -4,10 +4,10 @@
 #include <array>
 #include <cstdint>
 
-#include "render/pathtrace/camera_rays.h"
 #include "render/pathtrace/path_group.h"
 #include "render/pathtrace/pixel_channels.h"
 #include "render/pathtrace/pixel_sums.h"
+#include "render/pathtrace/rays/camera_rays.h"
 
 namespace softreel {
 

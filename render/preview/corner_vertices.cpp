@@ -13,22 +13,23 @@ Triangle coordinates_of(const MotionMesh& mesh, std::size_t t) {
   return corners[0] >= 0 && corners[1] >= 0 && corners[2] >= 0 ? corners : Triangle{-1, -1, -1};
 }
 
-/// Hands out vertices for pairs of mesh vertex and coordinate. The few of one mesh vertex are a chain.
-class Pairs {
+/// Hands out vertices for what the corners of a mesh share. The few of one mesh vertex are a chain.
+class SharedCorners {
  public:
-  Pairs(std::size_t mesh_vertices, CornerVertices& result) : first_(mesh_vertices, -1), result_(result) {}
+  SharedCorners(std::size_t mesh_vertices, CornerVertices& result) : first_(mesh_vertices, -1), result_(result) {}
 
-  Index of(Index vertex, Index coordinate) {
+  Index of(Index vertex, Index normal, Index coordinate) {
     Index* link = &first_[static_cast<std::size_t>(vertex)];
     while (*link >= 0) {
       const auto here = static_cast<std::size_t>(*link);
-      if (result_.coordinate_of[here] == coordinate) return *link;
+      if (result_.coordinate_of[here] == coordinate && result_.normal_of[here] == normal) return *link;
       link = &next_[here];
     }
     const auto added = static_cast<Index>(next_.size());
     *link = added;
     next_.push_back(-1);
     result_.vertex_of.push_back(vertex);
+    result_.normal_of.push_back(normal);
     result_.coordinate_of.push_back(coordinate);
     return added;
   }
@@ -43,11 +44,11 @@ class Pairs {
 CornerVertices split_at_seams(const MotionMesh& mesh) {
   CornerVertices result;
   result.triangles.reserve(mesh.triangles.size());
-  Pairs pairs(mesh.times.back().positions.size(), result);
+  SharedCorners shared(mesh.times.back().positions.size(), result);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle coordinates = coordinates_of(mesh, t);
+    const Triangle coordinates = coordinates_of(mesh, t), &normals = mesh.corners_of_normals()[t];
     Triangle corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = pairs.of(mesh.triangles[t][k], coordinates[k]);
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = shared.of(mesh.triangles[t][k], normals[k], coordinates[k]);
     result.triangles.push_back(corners);
   }
   return result;
@@ -61,6 +62,7 @@ CornerVertices split_all_corners(const MotionMesh& mesh) {
     result.triangles.push_back({first, first + 1, first + 2});
     for (std::size_t k = 0; k < 3; ++k) {
       result.vertex_of.push_back(mesh.triangles[t][k]);
+      result.normal_of.push_back(mesh.corners_of_normals()[t][k]);
       result.coordinate_of.push_back(coordinates[k]);
     }
   }

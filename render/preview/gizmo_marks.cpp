@@ -15,12 +15,12 @@ constexpr float kSmallestLineWidth = 1;  ///< pixels of any picture
 
 class Overlay {
  public:
-  Overlay(const Eigen::Matrix4f& clip_from_world, const Vec3f& eye, int width, int height)
+  Overlay(const Eigen::Matrix4f& clip_from_world, const Vec3f& eye, int width, int height, int picture_height)
       : clip_from_world_(clip_from_world),
         eye_(eye),
         width_(static_cast<float>(width)),
         height_(static_cast<float>(height)),
-        scale_(height_ / 720) {}
+        scale_(static_cast<float>(picture_height) / 720) {}
 
   void add(const GizmoMarks::Dot& dot) {
     const Eigen::Vector4f center = clip(dot.at);
@@ -78,8 +78,8 @@ class Overlay {
 }  // namespace
 
 std::vector<OverlayVertex> overlay_triangles(const GizmoMarks& marks, const Eigen::Matrix4f& clip_from_world,
-                                             const Vec3f& eye, int width, int height) {
-  Overlay overlay(clip_from_world, eye, width, height);
+                                             const Vec3f& eye, int width, int height, int picture_height) {
+  Overlay overlay(clip_from_world, eye, width, height, picture_height);
   for (const GizmoMarks::Line& line : marks.lines) overlay.add(line);
   for (const GizmoMarks::Dot& dot : marks.dots) overlay.add(dot);
   return overlay.take();

@@ -33,10 +33,10 @@ struct OverlayVertex {
   Vec3f color;  ///< display values
 };
 
-/// Triangles, three vertices each, that show the marks in a picture of width x height pixels: lines first. What lies
-/// behind the camera is left out, and lines are cut there. Marks come nearer to the camera, which is at `eye`, by two
-/// thousandths of their distance, so that those on a surface are not half in it.
+/// Triangles, three vertices each, that show the marks in width x height pixels of a picture `picture_height` pixels
+/// high: lines first. What lies behind the camera is left out, and lines are cut there. Marks come nearer to the
+/// camera, which is at `eye`, by two thousandths of their distance, so that those on a surface are not half in it.
 std::vector<OverlayVertex> overlay_triangles(const GizmoMarks& marks, const Eigen::Matrix4f& clip_from_world,
-                                             const Vec3f& eye, int width, int height);
+                                             const Vec3f& eye, int width, int height, int picture_height);
 
 }  // namespace softreel

@@ -9,7 +9,8 @@ namespace {
 class NullPreview : public Preview {
  public:
   DisplayImage draw(const Scene& scene, int width, int height, ViewTransform view, float exposure,
-                    const PreviewStyle&) override {
+                    const PreviewStyle& style) override {
+    if (style.window != PixelWindow{}) width = style.window.width(), height = style.window.height();
     CHECK(width > 0);
     CHECK(height > 0);
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

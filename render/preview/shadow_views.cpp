@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "render/preview/preview_lights.h"
+
 namespace softreel {
 namespace {
 
@@ -65,14 +67,16 @@ std::vector<ShadowView> shadow_views(const Scene& scene, int most, int size) {
   const Ball ball = ball_around(scene.meshes);
   std::vector<ShadowView> views;
   if (!(ball.radius > 0)) return views;
-  const auto add = [&](ShadowView view, std::size_t light) {
-    view.light = static_cast<int>(light);
+  const auto add = [&](ShadowView view, int light) {
+    view.light = light;
     if (static_cast<int>(views.size()) < most) views.push_back(view);
   };
-  for (std::size_t k = 0; k < scene.suns.size(); ++k) add(sun_view(scene.suns[k], ball, size), k);
-  for (std::size_t k = 0; k < scene.area_lights.size(); ++k)
-    if ((scene.area_lights[k].center - ball.center).norm() > 1.05f * ball.radius)
-      add(lamp_view(scene.area_lights[k], ball, size), k);
+  const PreviewLights lights = preview_lights(scene);
+  for (const int k : lights.suns) add(sun_view(scene.suns[static_cast<std::size_t>(k)], ball, size), k);
+  for (const int k : lights.lamps) {
+    const AreaLight& lamp = scene.area_lights[static_cast<std::size_t>(k)];
+    if ((lamp.center - ball.center).norm() > 1.05f * ball.radius) add(lamp_view(lamp, ball, size), k);
+  }
   return views;
 }
 

@@ -17,8 +17,8 @@ struct ShadowView {
   float texel = 0;  ///< m, edge of a pixel of the map where the bodies are
 };
 
-/// One for each light that can cast a shadow, suns first, then lamps, each in the order of the shot; `most` of them.
-/// Lamps within the ball around the bodies cast none. size: pixels of a map's edge.
+/// One for each light of preview_lights that can cast a shadow, suns first, then lamps, each in the order of the shot;
+/// `most` of them. Lamps within the ball around the bodies cast none. size: pixels of a map's edge.
 std::vector<ShadowView> shadow_views(const Scene& scene, int most, int size);
 
 }  // namespace softreel

@@ -52,4 +52,16 @@ CameraFrame camera_frame(const Camera& camera, int width, int height) {
   return frame;
 }
 
+CameraFrame seen_through(const PixelWindow& window, CameraFrame frame, int width, int height) {
+  if (window == PixelWindow{}) return frame;
+  CHECK(window.width() > 0);
+  CHECK(window.height() > 0);
+  const float x = frame.half_width / static_cast<float>(width), y = frame.half_height / static_cast<float>(height);
+  frame.center_x += x * static_cast<float>(window.left + window.right - width);
+  frame.center_y += y * static_cast<float>(height - window.top - window.bottom);
+  frame.half_width = x * static_cast<float>(window.width());
+  frame.half_height = y * static_cast<float>(window.height());
+  return frame;
+}
+
 }  // namespace softreel

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace softreel {
 
 namespace {
 
-constexpr float kPi = 3.14159265358979324f;
+constexpr float kPi = std::numbers::pi_v<float>;
 
 /// Bilinear between texel centres; wraps around, ends at the poles.
 Vec3f interpolated(const EnvironmentImage& image, const Vec2f& at) {

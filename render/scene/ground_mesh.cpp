@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@ namespace softreel {
 
 namespace {
 
-constexpr float kHalfPi = 1.57079632679f;
+constexpr float kHalfPi = std::numbers::pi_v<float> / 2;
 constexpr int kArcSegments = 48;
 struct Axes {
   Vec3f across, along;  ///< horizontal; along: away from the camera

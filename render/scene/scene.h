@@ -31,9 +31,11 @@ struct EdgeLines {
 struct MotionMesh {
   std::string name;
   std::vector<Triangle> triangles;
+  /// Per triangle the normals of its corners, where hard edges give a vertex several; empty: those of its vertices.
+  std::vector<Triangle> normal_triangles;
   struct Time {
     std::vector<Vec3f> positions;
-    std::vector<Vec3f> normals;  ///< unit, per vertex
+    std::vector<Vec3f> normals;  ///< unit, per vertex, or as normal_triangles count them; empty: the triangles are flat
   };
   std::vector<Time> times;  ///< 1: no motion blur
   /// m, per vertex, the shape at rest: what trees that rays are shot at are built from, to be fitted to the times.
@@ -45,6 +47,11 @@ struct MotionMesh {
   std::vector<float> strain;          ///< per vertex, for the channel of that name; empty: none
   std::optional<EdgeLines> lines;
   SurfaceColoring coloring;  ///< what varies over the surface
+
+  /// Per triangle its corners among the normals.
+  const std::vector<Triangle>& corners_of_normals() const {
+    return normal_triangles.empty() ? triangles : normal_triangles;
+  }
 };
 
 enum class GroundStyle {

@@ -81,7 +81,7 @@ LinearSystem make_system(const TetMesh& mesh, const std::vector<ElementMaterial>
   system.matrix.pattern = stiffness_pattern(mesh.tets, static_cast<Index>(nodes));
   StiffnessTerms terms;
   find_stiffness_terms(body, positions, rotations, shares, dynamic ? Curvature::None : Curvature::PositivePart, terms,
-                       {}, threads);
+                       threads);
   StiffnessAssembler(mesh.tets, system.matrix.pattern).assemble(terms, node_terms, system.matrix, threads);
   system.load = find_forces(body, masses, positions, rotations, threads);
   const double low = Box(mesh.nodes).low[0];

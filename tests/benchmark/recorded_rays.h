@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "render/pathtrace/ray_scene.h"
+#include "render/pathtrace/rays/ray_scene.h"
 
 namespace softreel {
 

@@ -22,8 +22,8 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "render/pathtrace/ray_scene.h"
-#include "render/pathtrace/tree_fit.h"
+#include "render/pathtrace/rays/ray_scene.h"
+#include "render/pathtrace/rays/tree_fit.h"
 
 namespace softreel {
 namespace {

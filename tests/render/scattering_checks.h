@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "render/pathtrace/bsdf.h"
-#include "render/pathtrace/sampler.h"
-#include "render/pathtrace/sampling.h"
+#include "render/pathtrace/materials/bsdf.h"
+#include "render/pathtrace/rays/sampler.h"
+#include "render/pathtrace/rays/sampling.h"
 
 namespace softreel {
 

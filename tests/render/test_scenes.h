@@ -51,6 +51,24 @@ inline MotionMesh sphere(const Vec3f& center, float radius, const Appearance& ap
   return mesh;
 }
 
+/// A cube about the origin with edges 2 * half, of 8 vertices and 12 triangles; each side has the one normal it is flat
+/// by.
+inline MotionMesh hard_cube(float half, const Appearance& appearance) {
+  MotionMesh mesh;
+  mesh.name = "cube";
+  mesh.appearance = appearance;
+  mesh.times.resize(1);
+  for (int k = 0; k < 8; ++k)
+    mesh.times[0].positions.emplace_back((k & 1) != 0 ? half : -half, (k & 2) != 0 ? half : -half,
+                                         (k & 4) != 0 ? half : -half);
+  mesh.times[0].normals = {-Vec3f::UnitZ(), Vec3f::UnitZ(),  -Vec3f::UnitY(),
+                           Vec3f::UnitY(),  -Vec3f::UnitX(), Vec3f::UnitX()};
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  for (Index t = 0; t < 12; ++t) mesh.normal_triangles.push_back({t / 2, t / 2, t / 2});
+  return mesh;
+}
+
 inline Appearance matte(float albedo) {
   Appearance appearance;
   appearance.base_color = Vec3f::Constant(albedo);

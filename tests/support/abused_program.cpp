@@ -34,6 +34,20 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
+/// Attributes of a program that ignores no signal, though the test may have been started in the background.
+struct OpenToSignals {
+  posix_spawnattr_t value;
+  OpenToSignals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+    posix_spawnattr_init(&value);
+    posix_spawnattr_setsigdefault(&value, &signals);
+    posix_spawnattr_setflags(&value, POSIX_SPAWN_SETSIGDEF);
+  }
+  ~OpenToSignals() { posix_spawnattr_destroy(&value); }
+};
+
 }  // namespace
 
 RunningProgram::RunningProgram(const std::string& name, std::vector<std::string> arguments, const Abuse& abuse)
@@ -46,8 +60,9 @@ RunningProgram::RunningProgram(const std::string& name, std::vector<std::string>
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  const int failed = posix_spawnp(&pid_, arguments[0].c_str(), &actions, nullptr, pointers_to(arguments).data(),
-                                  pointers_to(variables).data());
+  const OpenToSignals attributes;
+  const int failed = posix_spawnp(&pid_, arguments[0].c_str(), &actions, &attributes.value,
+                                  pointers_to(arguments).data(), pointers_to(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) throw std::runtime_error(arguments[0] + ": " + std::strerror(failed));
 }

@@ -56,6 +56,11 @@ Outcome run(const std::string& command_line) {
   return outcome;
 }
 
+bool has_no_egl(const Outcome& preview) {
+  return (preview.status == 1 && preview.err.find("The preview cannot draw: ") != std::string::npos) ||
+         (preview.status == 2 && preview.err.find("This build of softreel has no preview: ") != std::string::npos);
+}
+
 std::vector<std::string> files_under(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder))

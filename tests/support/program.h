@@ -14,6 +14,10 @@ struct Outcome {
 /// Runs a shell command line with `softreel` on it standing for the built program.
 Outcome run(const std::string& command_line);
 
+/// Whether a preview ended because there is no EGL to draw with: none on this machine, or none in this build. Whatever
+/// else it ended with is a failure.
+bool has_no_egl(const Outcome& preview);
+
 /// A new empty folder under the test's temporary folder; its path has no blanks.
 std::string new_folder(const std::string& name);
 

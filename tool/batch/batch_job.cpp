@@ -104,14 +104,39 @@ void require_own_files(const std::vector<BatchJob>& jobs) {
   }
 }
 
-void require_swept_once(const std::vector<SweepAxis>& axes, const std::vector<Override>& sets) {
-  for (const SweepAxis& axis : axes)
-    for (const Override& set : sets)
-      if (axis.path == set.path)
-        throw input_error(
-            fmt::format("--sweep: {} is also given by --set.\n  Accepted: one of the two. Take it out of "
-                        "--set, or put its value among those of --sweep.",
-                        axis.path));
+/// Throws input_error if a swept field of the shot is given once more, in whatever spelling.
+void require_swept_once(const std::vector<SweepAxis>& axes, const std::vector<Override>& sets, const Shot& shot) {
+  std::map<std::string, std::string> spellings;  // by full path
+  for (const SweepAxis& axis : axes) {
+    const auto [other, is_first] = spellings.emplace(full_path({axis.path, "", "--sweep"}, shot), axis.path);
+    if (!is_first)
+      throw input_error(fmt::format(
+          "--sweep: {} and {} are one field of {}.\n  Accepted: each field once. Put all its values into one "
+          "--sweep.",
+          other->second, axis.path, shot.path));
+  }
+  for (const Override& set : sets)
+    if (const auto swept = spellings.find(full_path(set, shot)); swept != spellings.end())
+      throw input_error(
+          fmt::format("--sweep: {} is also given by --set.\n  Accepted: one of the two. Take it out of "
+                      "--set, or put its value among those of --sweep.",
+                      swept->second));
+}
+
+/// Throws input_error for fields that an option decides for all jobs: the variants would be named apart, and equal.
+void require_own_values(const std::vector<SweepAxis>& axes, const BatchRequest& request, const Shot& shot) {
+  const auto refuse = [&](const std::string& path, const std::string& why, const std::string& next) {
+    for (const SweepAxis& axis : axes)
+      if (full_path({axis.path, "", "--sweep"}, shot) == path)
+        throw input_error(fmt::format("--sweep: {} is decided by {}.\n  {}", path, why, next));
+  };
+  refuse("solver.threads", "the batch, which gives each job its share of the processors",
+         "Accepted: other fields. Use --threads and --jobs.");
+  if (!request.output.empty())
+    refuse("output.directory", "--output", "Accepted: one of the two. Take one of them out.");
+  if (!request.cache.empty() || request.cache_limit_gb >= 0)
+    refuse("output.cache_limit", request.cache.empty() ? "--cache-limit" : "--cache",
+           "Accepted: one of the two. Take one of them out.");
 }
 
 }  // namespace
@@ -133,7 +158,6 @@ std::vector<BatchJob> make_jobs(const BatchRequest& request) {
   for (const std::string& text : request.sweeps) axes.push_back(parse_sweep(text));
   std::vector<Override> overrides;
   for (const std::string& text : request.sets) overrides.push_back(parse_override(text));
-  require_swept_once(axes, overrides);
   const std::vector<Variant> variants = expand_sweeps(axes, kMostJobs / std::max<std::size_t>(1, request.shots.size()));
   std::vector<BatchJob> jobs;
   for (const std::string& path : request.shots) {
@@ -153,6 +177,8 @@ std::vector<BatchJob> make_jobs(const BatchRequest& request) {
       jobs.push_back(unreadable(path, problem));
       continue;
     }
+    require_own_values(axes, request, *shot);
+    require_swept_once(axes, overrides, *shot);
     for (const Variant& variant : variants)
       jobs.push_back(make_job(request, path, axes.empty() ? *shot : read_variant(path, overrides, variant), variant));
   }

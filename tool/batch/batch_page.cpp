@@ -7,11 +7,11 @@
 #include "tool/batch/batch_style.h"
 #include "tool/batch/child_process.h"
 #include "tool/batch/energy_plot.h"
+#include "tool/cache/base64.h"
 #include "tool/report/console.h"
 #include "tool/report/markup.h"
 #include "tool/report/run_report.h"
 #include "tool/report/version.h"
-#include "tool/stages/base64.h"
 
 namespace softreel {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tool/batch/child_process.h"
-#include "tool/stages/json_text.h"
+#include "tool/cache/json_text.h"
 
 namespace softreel {
 namespace {

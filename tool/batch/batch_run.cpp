@@ -17,8 +17,8 @@
 #include "tool/batch/job_messages.h"
 #include "tool/batch/machine.h"
 #include "tool/batch/schedule.h"
+#include "tool/cache/atomic_file.h"
 #include "tool/report/log_file.h"
-#include "tool/stages/atomic_file.h"
 
 namespace softreel {
 namespace {

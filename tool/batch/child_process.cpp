@@ -29,6 +29,7 @@ namespace {
   if (::getppid() != parent) give_up();  // it ended before the line above
   const int badness = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
   if (badness >= 0 && ::write(badness, "500", 3) < 0) ::close(badness);  // a wish; nothing is lost without it
+  ::signal(SIGTERM, SIG_DFL);  // which ends it, though this program may have been started to ignore its own
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);

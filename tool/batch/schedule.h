@@ -34,7 +34,6 @@ class Schedule {
   bool needs_more_than_all(std::size_t job) const { return bytes_[job] > limits_.bytes; }
   double expected_bytes(std::size_t job) const { return bytes_[job]; }
   int running() const { return running_; }
-  double running_bytes() const { return running_bytes_; }
   std::size_t waiting() const { return queue_.size(); }
 
  private:

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "tool/cache/key.h"
 #include "tool/shot/schema.h"
-#include "tool/stages/key.h"
 
 namespace softreel {
 namespace {

@@ -1,5 +1,5 @@
 # Build type, language, options.
-if(NOT CMAKE_BUILD_TYPE)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, RelWithDebInfo, Debug" FORCE)
 endif()
 set(CMAKE_CXX_STANDARD 20)
@@ -24,8 +24,10 @@ foreach(part EMBREE EGL ASSIMP OPENVDB)
   set_property(CACHE SOFTREEL_WITH_${part} PROPERTY STRINGS AUTO ON OFF)
 endforeach()
 
-# Where programs look for their parts: from themselves, so that a build folder may be moved. Built and installed programs
-# have the same path: one to be replaced is filled up with colons, and an empty path between them is the current folder.
+# The layout under the prefix is fixed, bin/, lib/softreel/ and share/, whatever CMAKE_INSTALL_BINDIR and its like say: the
+# program finds its parts and presets from where it lies, so that a build folder, or an installation, may be moved. Built
+# and installed programs have the same path to parts: one to be replaced is filled up with colons, and an empty path
+# between them is the current folder.
 set(SOFTREEL_PART_FOLDER "lib/softreel")
 if(SOFTREEL_LAZY_PARTS)
   set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)

@@ -2,8 +2,10 @@
 # libraries (none if it is off), and SOFTREEL_HAS_NAME, 0|1.
 set(SOFTREEL_PART_TABLE "")
 
-# softreel_part(NAME PACKAGE TARGETS...): decides by SOFTREEL_WITH_NAME and by whether PACKAGE was found.
+# softreel_part(NAME FOUND PACKAGE LIBRARIES... [INCLUDE FOLDERS...]): decides by SOFTREEL_WITH_NAME and by whether PACKAGE
+# was found. INCLUDE: where the headers are of libraries that are no targets.
 function(softreel_part name found package)
+  cmake_parse_arguments(PARSE_ARGV 3 part "" "" "INCLUDE")
   set(wanted "${SOFTREEL_WITH_${name}}")
   add_library(softreel_part_${name} INTERFACE)
   if(wanted STREQUAL "ON" AND NOT found)
@@ -12,7 +14,8 @@ function(softreel_part name found package)
   endif()
   if(found AND NOT wanted STREQUAL "OFF")
     set(value 1)
-    target_link_libraries(softreel_part_${name} INTERFACE ${ARGN})
+    target_link_libraries(softreel_part_${name} INTERFACE ${part_UNPARSED_ARGUMENTS})
+    target_include_directories(softreel_part_${name} SYSTEM INTERFACE ${part_INCLUDE})
   else()
     set(value 0)
   endif()
@@ -63,6 +66,27 @@ find_package(TBB REQUIRED)
 find_package(fmt REQUIRED)
 find_package(ZLIB REQUIRED)
 
+# softreel_need(NAME HEADER [LIBRARY]): a library that has no CMake package, or of which only headers are used, as the target
+# softreel_NAME; an error if it is not there.
+function(softreel_need name header)
+  string(TOUPPER "SOFTREEL_${name}" variable)
+  find_path(${variable}_INCLUDE "${header}")
+  add_library(softreel_${name} INTERFACE)
+  if(ARGN)
+    find_library(${variable} "${ARGN}")
+    target_link_libraries(softreel_${name} INTERFACE "${${variable}}")
+  endif()
+  if(NOT ${variable}_INCLUDE OR (ARGN AND NOT ${variable}))
+    message(FATAL_ERROR "softreel needs ${name}: its ${header} or its library was not found. "
+                        "Install it (tool/packages.txt names the package).")
+  endif()
+  target_include_directories(softreel_${name} SYSTEM INTERFACE "${${variable}_INCLUDE}")
+endfunction()
+
+softreel_need(stb stb/stb_image.h)
+softreel_need(toml toml++/toml.h)
+softreel_need(xxhash xxhash.h xxhash)
+
 if(NOT SOFTREEL_WITH_ASSIMP STREQUAL "OFF")
   find_package(assimp QUIET)
 endif()
@@ -81,7 +105,8 @@ if(NOT SOFTREEL_WITH_EGL STREQUAL "OFF")
     set(egl_found TRUE)
   endif()
 endif()
-softreel_part(EGL "${egl_found}" "EGL and epoxy" OpenGL::EGL "${SOFTREEL_EPOXY}")
+softreel_part(EGL "${egl_found}" "EGL and epoxy" OpenGL::EGL "${SOFTREEL_EPOXY}"
+              INCLUDE "${SOFTREEL_EPOXY_INCLUDE}")
 
 # Debian 12 has no CMake package of OpenVDB, and its Find module lies where CMake does not look.
 if(NOT SOFTREEL_WITH_OPENVDB STREQUAL "OFF")
@@ -92,7 +117,8 @@ if(NOT SOFTREEL_WITH_OPENVDB STREQUAL "OFF")
     set(openvdb_found TRUE)
   endif()
 endif()
-softreel_part(OPENVDB "${openvdb_found}" "OpenVDB" "${SOFTREEL_OPENVDB}" TBB::tbb)
+softreel_part(OPENVDB "${openvdb_found}" "OpenVDB" "${SOFTREEL_OPENVDB}" TBB::tbb
+              INCLUDE "${SOFTREEL_OPENVDB_INCLUDE}" "${SOFTREEL_BOOST_IOSTREAMS_INCLUDE}")
 
 function(softreel_print_parts)
   message(STATUS "softreel ${PROJECT_VERSION}: ${CMAKE_BUILD_TYPE}, tests ${SOFTREEL_BUILD_TESTS}, benchmarks "

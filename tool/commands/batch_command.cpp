@@ -13,9 +13,9 @@
 #include "tool/batch/batch_page.h"
 #include "tool/batch/batch_run.h"
 #include "tool/batch/junit.h"
+#include "tool/cache/atomic_file.h"
 #include "tool/commands/commands.h"
 #include "tool/farm/shell_text.h"
-#include "tool/stages/atomic_file.h"
 
 namespace softreel {
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "tool/cache/process.h"
 #include "tool/commands/commands.h"
-#include "tool/stages/process.h"
 
 namespace softreel {
 namespace {

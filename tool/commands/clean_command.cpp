@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "tool/cache/atomic_file.h"
+#include "tool/cache/cache_use.h"
 #include "tool/commands/commands.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/cache_use.h"
 #include "tool/stages/picture_stage.h"
 
 namespace softreel {
@@ -18,9 +18,16 @@ void say(const CacheRemoval& removal, const Cache& cache, bool dry_run) {
               format_bytes(cache_size(cache) - (dry_run ? removal.bytes : 0)).c_str());
 }
 
+/// Throws work_error if something could not be removed.
+void require_removed(const CacheRemoval& removal) {
+  if (removal.problem.empty()) return;
+  throw work_error(removal.problem + ".\n  Run the command as a user who may remove files there.");
+}
+
 void operator+=(CacheRemoval& sum, const CacheRemoval& more) {
   sum.files += more.files;
   sum.bytes += more.bytes;
+  if (sum.problem.empty()) sum.problem = more.problem;
 }
 
 }  // namespace
@@ -49,6 +56,7 @@ int run_clean(const CleanOptions& options) {
     const Cache cache(options.shot.cache, Cache::Storing::Wanted, log);
     removal += options.all ? empty_cache(cache, dry_run) : cut_cache(cache, options.shot.cache_limit_gb * 1e9, dry_run);
     say(removal, cache, dry_run);
+    require_removed(removal);
     return 0;
   }
   ShotOptions silent = options.shot;
@@ -70,6 +78,7 @@ int run_clean(const CleanOptions& options) {
   }
   if (options.shot.cache_limit_gb >= 0) removal += cut_cache(cache, options.shot.cache_limit_gb * 1e9, dry_run);
   say(removal, cache, dry_run);
+  require_removed(removal);
   return 0;
 }
 

@@ -9,11 +9,11 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "tool/cache/atomic_file.h"
+#include "tool/cache/process.h"
 #include "tool/farm/openjd.h"
 #include "tool/farm/shell_text.h"
 #include "tool/farm/slurm.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/process.h"
 
 namespace softreel {
 namespace {

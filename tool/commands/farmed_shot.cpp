@@ -8,22 +8,23 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "tool/bodies/simulate_key.h"
+#include "tool/cache/atomic_file.h"
+#include "tool/cache/process.h"
 #include "tool/commands/picture_wishes.h"
 #include "tool/commands/plan_estimate.h"
 #include "tool/report/version.h"
+#include "tool/shot/plain_path.h"
 #include "tool/shot/shot_layers.h"
 #include "tool/shot/shot_load.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/process.h"
 #include "tool/stages/scene_stage.h"
-#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 namespace fs = std::filesystem;
 namespace {
 
 std::string absolute(const std::string& path) {
-  return fs::absolute(path).lexically_normal().string();
+  return plain_path(fs::absolute(path)).string();
 }
 
 std::string text_of(const std::string& path) {
@@ -203,7 +204,7 @@ FarmEstimate FarmedShot::estimate(int cpus) {
   ShotRun& current = run();
   const SceneStage scenes(current);
   const PictureStage pictures(scenes, session_->shot(), outputs, session_->context());
-  const PlanEstimate plan = estimate_plan(current, pictures, session_->frames(), cpus);
+  const PlanEstimate plan = estimate_plan(current, scenes, pictures, session_->frames(), cpus);
   return {plan.bytes, plan.fill_seconds, plan.simulate_seconds,
           plan.traced > 0 ? plan.render_seconds / plan.traced : 0.0};
 }

@@ -8,11 +8,11 @@
 #include "render/image/flip.h"
 #include "render/image/image_compare.h"
 #include "render/pathtrace/path_tracer.h"
+#include "tool/cache/atomic_file.h"
 #include "tool/commands/commands.h"
+#include "tool/outputs/outputs.h"
 #include "tool/report/golden_page.h"
-#include "tool/stages/atomic_file.h"
 #include "tool/stages/golden_record.h"
-#include "tool/stages/outputs.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
 

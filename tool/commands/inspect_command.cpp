@@ -12,10 +12,10 @@
 #include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
+#include "tool/cache/json_text.h"
 #include "tool/commands/commands.h"
 #include "tool/report/cut_picture.h"
 #include "tool/report/surface_picture.h"
-#include "tool/stages/json_text.h"
 
 namespace softreel {
 namespace {

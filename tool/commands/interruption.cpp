@@ -9,8 +9,8 @@
 
 #include <unistd.h>
 
-#include "tool/stages/file_lock.h"
-#include "tool/stages/process.h"
+#include "tool/cache/file_lock.h"
+#include "tool/cache/process.h"
 
 namespace softreel {
 namespace {
@@ -30,16 +30,19 @@ std::atomic<bool>& keeps_nothing() {
   return nothing;
 }
 
-sigset_t watched_signals() {
+/// Ctrl-C, a request to end, a terminal that is closed; but none that whoever started the program has it ignore, as
+/// nohup does. A watched one would come all the same.
+sigset_t signals_to_watch() {
   sigset_t signals;
   sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction inherited {};
+    if (::sigaction(signal, nullptr, &inherited) != 0 || inherited.sa_handler != SIG_IGN) sigaddset(&signals, signal);
+  }
   return signals;
 }
 
-void watch() {
-  const sigset_t signals = watched_signals();
+void watch(sigset_t signals) {
   int signal = 0;
   if (sigwait(&signals, &signal) != 0) return;
   cancellation() = true;
@@ -76,9 +79,9 @@ void wait_for_children_when_interrupted() {
 
 void watch_for_interruption() {
   cancellation() = false;
-  const sigset_t signals = watched_signals();
+  const sigset_t signals = signals_to_watch();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // every later thread inherits it: only the watch sees them
-  std::thread(watch).detach();
+  std::thread(watch, signals).detach();
 }
 
 }  // namespace softreel

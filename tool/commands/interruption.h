@@ -1,4 +1,5 @@
-/// Ctrl-C and SIGTERM: the work stops at its next step, and the program ends within a second whatever it is doing.
+/// Ctrl-C, SIGTERM and SIGHUP: the work stops at its next step, and the program ends within a second whatever it is
+/// doing, or within five if it has to wait for processes of its own.
 #pragma once
 
 #include <atomic>
@@ -8,7 +9,8 @@ namespace softreel {
 /// Set once the user has asked to stop; stages ask for it between steps, parallel loops between chunks.
 std::atomic<bool>& cancellation();
 
-/// Watches for SIGINT and SIGTERM on a thread of its own. What does not stop by itself in time (a library that reads a
+/// Watches for SIGINT, SIGTERM and SIGHUP on a thread of its own, but for those that the program was started to ignore.
+/// What does not stop by itself in time (a library that reads a
 /// large file, say) is ended with status 130: files are written so that this loses nothing but the frame in work. A
 /// second signal ends the program at once. Called once, before other threads are made.
 void watch_for_interruption();

@@ -53,6 +53,7 @@ int run_movie(const ShotOptions& options) {
   const Wanted wanted = find_wanted(session);
   ShotRun run(shot, session.context(), DialUse::LookUp);
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
+  if (wanted.movie) require_movie_path(outputs);
   session.prepare(outputs, run);
   const SceneStage scenes(run);
   const PictureStage pictures(scenes, shot, outputs, session.context());

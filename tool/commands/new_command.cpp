@@ -7,10 +7,10 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "tool/cache/atomic_file.h"
+#include "tool/cache/json_text.h"
 #include "tool/commands/commands.h"
 #include "tool/farm/shell_text.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/json_text.h"
 #include "tool/starter/starter_shot.h"
 
 namespace softreel {

@@ -7,15 +7,17 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "tool/bodies/glue_stage.h"
+#include "tool/bodies/simulate_key.h"
+#include "tool/cache/json_text.h"
+#include "tool/cache/stage_names.h"
 #include "tool/commands/commands.h"
+#include "tool/commands/picture_wishes.h"
 #include "tool/commands/plan_estimate.h"
-#include "tool/stages/json_text.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/picture_stage.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
-#include "tool/stages/simulate_key.h"
-#include "tool/stages/stage_names.h"
 
 namespace softreel {
 namespace {
@@ -29,13 +31,18 @@ constexpr double kPathsPerSecond = 2e6;        ///< two threads
 constexpr double kBytesPerTet = 1200;          ///< matrix, hierarchy, state
 constexpr double kBytesPerTriangle = 700;      ///< surface, normals, trees
 constexpr double kBytesPerPixel = 48;
+/// Of textures, with their halvings, and of surroundings, with what their light is drawn by.
+constexpr double kBytesPerTexel = 16;
+/// ffmpeg, which holds some frames on their way.
+constexpr double kEncoderBytes = 6e7, kEncoderBytesPerPixel = 200;
 constexpr double kBytesOfProgram = 2.5e7;  ///< code and libraries
 /// Of graded bodies, per square of the wanted distance on the sides of the body's box.
 constexpr double kTetsPerSquaredError = 0.3;
 
 struct Plan {
   double tets = 0, triangles = 0;
-  int simulated = 0, traced = 0;  ///< body frames and pictures that are not stored
+  int simulated = 0, traced = 0;  ///< body frames and pictures that are not stored; bodies that glue joins count once
+  int simulated_of = 0;           ///< body frames in all
   int kept = 0;                   ///< pictures that lie in the output folder already
   bool complete = false;          ///< nothing is to be done
   double fill_seconds = 0, simulate_seconds = 0, render_seconds = 0, bytes = 0;
@@ -54,6 +61,16 @@ double expected_tets(const BodySettings& body, const LoadedBody& loaded) {
   return 12 * size.prod() / (body.edge * body.edge * body.edge);
 }
 
+/// Indices of the bodies that are simulated as one: those that glue joins, and each of the others.
+std::vector<std::vector<std::size_t>> simulated_wholes(const Shot& shot) {
+  std::vector<std::vector<std::size_t>> wholes = glue_groups(shot);
+  std::set<std::size_t> glued;
+  for (const std::vector<std::size_t>& group : wholes) glued.insert(group.begin(), group.end());
+  for (std::size_t b = 0; b < shot.bodies.size(); ++b)
+    if (glued.count(b) == 0) wholes.push_back({b});
+  return wholes;
+}
+
 /// Body frames that the pictures `needed` ask for and the cache does not hold: all from the last stored one on.
 int frames_to_simulate(const ShotRun& run, std::size_t body, const std::vector<int>& needed) {
   const int start = first_simulated_frame(run.shot());
@@ -66,7 +83,34 @@ int frames_to_simulate(const ShotRun& run, std::size_t body, const std::vector<i
   return static_cast<int>(missing.size());
 }
 
-Plan make_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan& frames, int threads) {
+/// Adds what the bodies need that are simulated as one.
+void add_whole(const ShotRun& run, const std::vector<std::size_t>& bodies, const std::vector<int>& needed, double speed,
+               Plan& plan) {
+  double tets = 0;
+  for (const std::size_t b : bodies) {
+    const double own = expected_tets(run.settings(b), run.loaded(b));
+    tets += own;
+    plan.triangles += static_cast<double>(run.loaded(b).surface.triangles.size());
+    if (!needed.empty() && !run.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key()))
+      plan.fill_seconds += own * kFillSecondsPerTet / speed;
+  }
+  const bool is_static = run.shot().settings.mode == SimulationMode::Static;
+  const double steps = is_static ? kStaticStepsPerFrame : run.resolved(bodies.front()).solver.substeps;
+  const int simulated = frames_to_simulate(run, bodies.front(), needed);
+  plan.tets += tets;
+  plan.simulated += simulated;
+  plan.simulate_seconds += simulated * steps * tets * kStepSecondsPerTet / speed;
+}
+
+/// Of memory, beside the bodies: of the program, the pictures, what they show, and ffmpeg where it encodes them.
+double other_bytes(const SceneStage& scenes, const Shot& shot, const FrameSpan& frames, bool traces) {
+  const double pixels = static_cast<double>(shot.render.params.width) * shot.render.params.height;
+  return kBytesOfProgram + pixels * kBytesPerPixel + (traces ? scenes.count_texels() * kBytesPerTexel : 0) +
+         (makes_movie(shot, frames) ? kEncoderBytes + pixels * kEncoderBytesPerPixel : 0);
+}
+
+Plan make_plan(const ShotRun& run, const SceneStage& scenes, const PictureStage& pictures, const FrameSpan& frames,
+               int threads) {
   const Shot& shot = run.shot();
   const double speed = threads / 2.0;
   std::vector<int> needed;
@@ -78,24 +122,24 @@ Plan make_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan
       needed.push_back(frame);
   }
   plan.traced = static_cast<int>(needed.size());
-  for (std::size_t b = 0; b < run.body_count(); ++b) {
-    const LoadedBody& loaded = run.loaded(b);
-    const double tets = expected_tets(run.settings(b), loaded);
-    const double steps =
-        shot.settings.mode == SimulationMode::Static ? kStaticStepsPerFrame : run.resolved(b).solver.substeps;
-    const int simulated = frames_to_simulate(run, b, needed);
-    plan.tets += tets;
-    plan.triangles += static_cast<double>(loaded.surface.triangles.size());
-    plan.simulated += simulated;
-    plan.simulate_seconds += simulated * steps * tets * kStepSecondsPerTet / speed;
-    if (plan.traced > 0 && !run.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key()))
-      plan.fill_seconds += tets * kFillSecondsPerTet / speed;
+  for (const std::vector<std::size_t>& bodies : simulated_wholes(shot)) {
+    add_whole(run, bodies, needed, speed, plan);
+    plan.simulated_of += frames.last - first_simulated_frame(shot) + 1;
   }
   const double pixels = static_cast<double>(shot.render.params.width) * shot.render.params.height;
   plan.render_seconds = plan.traced * pixels * shot.render.params.samples / (kPathsPerSecond * speed);
-  plan.bytes =
-      kBytesOfProgram + plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle + pixels * kBytesPerPixel;
+  plan.bytes = plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle +
+               other_bytes(scenes, shot, frames, plan.traced > 0);
   return plan;
+}
+
+/// Whether a render would remove anything: pictures of an older shot, or a movie of them.
+bool has_outdated(const Session& session, const PictureStage& pictures, const Outputs& outputs) {
+  const FrameSpan& frames = session.frames();
+  const ShotSettings& settings = session.shot().settings;
+  return pictures.has_outdated(frames.first, frames.last) ||
+         (session.is_whole() && !outputs.pictures_outside(frames.first, frames.last).empty()) ||
+         is_movie_outdated(session.shot(), settings.first_frame, settings.last_frame, outputs);
 }
 
 /// Whether movie and contact sheet are there as far as the shot wants them, and the report.
@@ -114,10 +158,9 @@ bool has_the_rest(const Session& session, const Outputs& outputs) {
   return std::filesystem::is_regular_file(outputs.path("report.json"), none);
 }
 
-void print_json(const Session& session, const Plan& plan, std::size_t bodies) {
+void print_json(const Session& session, const Plan& plan) {
   const Shot& shot = session.shot();
   const FrameSpan& frames = session.frames();
-  const int body_frames = static_cast<int>(bodies) * (frames.last - first_simulated_frame(shot) + 1);
   const nlohmann::ordered_json json{{"command", "plan"},
                                     {"shot", shot.path},
                                     {"name", shot.settings.name},
@@ -126,7 +169,7 @@ void print_json(const Session& session, const Plan& plan, std::size_t bodies) {
                                     {"complete", plan.complete},
                                     {"tetrahedra", plan.tets},
                                     {"triangles", plan.triangles},
-                                    {"simulate", {{"missing", plan.simulated}, {"of", body_frames}}},
+                                    {"simulate", {{"missing", plan.simulated}, {"of", plan.simulated_of}}},
                                     {"trace", {{"missing", plan.traced}, {"there", plan.kept}, {"of", frames.count()}}},
                                     {"expected",
                                      {{"bytes", plan.bytes},
@@ -149,10 +192,11 @@ int run_plan(const ShotOptions& options) {
   const SceneStage scenes(run);
   Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
   const PictureStage pictures(scenes, shot, outputs, session.context());
-  Plan plan = make_plan(run, pictures, frames, session.context().threads.count());
-  plan.complete = plan.kept == frames.count() && has_the_rest(session, outputs);
+  Plan plan = make_plan(run, scenes, pictures, frames, session.context().threads.count());
+  plan.complete =
+      plan.kept == frames.count() && has_the_rest(session, outputs) && !has_outdated(session, pictures, outputs);
   if (options.json) {
-    print_json(session, plan, run.body_count());
+    print_json(session, plan);
     return 0;
   }
   std::printf("%s: would do (nothing is written):\n", shot.settings.name.c_str());
@@ -167,8 +211,7 @@ int run_plan(const ShotOptions& options) {
                 cached ? " (in the cache already)" : "");
   }
   std::printf(
-      "  simulate %d of %zu body frames (%s), the others are stored or not needed\n", plan.simulated,
-      run.body_count() * static_cast<std::size_t>(frames.last - first_simulated_frame(shot) + 1),
+      "  simulate %d of %d body frames (%s), the others are stored or not needed\n", plan.simulated, plan.simulated_of,
       shot.settings.mode == SimulationMode::Static
           ? "static"
           : fmt::format("{} sub-steps{}", run.resolved(0).solver.substeps, shot.solver.step_error > 0 ? " or more" : "")
@@ -184,8 +227,9 @@ int run_plan(const ShotOptions& options) {
   return 0;
 }
 
-PlanEstimate estimate_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan& frames, int threads) {
-  const Plan plan = make_plan(run, pictures, frames, threads);
+PlanEstimate estimate_plan(const ShotRun& run, const SceneStage& scenes, const PictureStage& pictures,
+                           const FrameSpan& frames, int threads) {
+  const Plan plan = make_plan(run, scenes, pictures, frames, threads);
   return {plan.bytes, plan.fill_seconds, plan.simulate_seconds, plan.render_seconds, plan.traced};
 }
 

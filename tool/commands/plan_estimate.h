@@ -3,6 +3,7 @@
 
 #include "tool/commands/session.h"
 #include "tool/stages/picture_stage.h"
+#include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
 
 namespace softreel {
@@ -14,6 +15,7 @@ struct PlanEstimate {
   int traced = 0;  ///< pictures that render_seconds are for
 };
 
-PlanEstimate estimate_plan(const ShotRun& run, const PictureStage& pictures, const FrameSpan& frames, int threads);
+PlanEstimate estimate_plan(const ShotRun& run, const SceneStage& scenes, const PictureStage& pictures,
+                           const FrameSpan& frames, int threads);
 
 }  // namespace softreel

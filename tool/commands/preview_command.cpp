@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,15 +11,16 @@
 #include "core/base/timer.h"
 #include "render/image/burn_in.h"
 #include "render/preview/preview.h"
+#include "render/preview/preview_lights.h"
+#include "tool/bodies/simulate_key.h"
 #include "tool/commands/commands.h"
 #include "tool/commands/preview_cut.h"
+#include "tool/outputs/outputs.h"
 #include "tool/stages/gizmos.h"
 #include "tool/stages/movie_stage.h"
-#include "tool/stages/outputs.h"
 #include "tool/stages/picture_stage.h"
 #include "tool/stages/scene_stage.h"
 #include "tool/stages/shot_run.h"
-#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 
@@ -104,6 +106,7 @@ class Playblast {
     const std::vector<SkinnedBody> bodies = run_.skin(frame, request);
     Scene scene = scenes_.at(frame, bodies);
     if (cut_) cut_->replace_bodies(frame, bodies, scene);
+    warn_of_lights(scene);
     const auto start = std::chrono::steady_clock::now();
     const std::vector<std::vector<char>> shown = cut_ ? cut_->shown_points() : std::vector<std::vector<char>>{};
     const Bytes png = encode_png(draw(frame, scene, gizmos_.at(frame, bodies, shown)));
@@ -121,7 +124,7 @@ class Playblast {
   }
   StageKey file_key(int frame) const {
     const OutputSettings& output = run_.shot().output;
-    KeyHasher key("preview 8");
+    KeyHasher key("preview 9");
     key.add(scenes_.preview_key(frame)).add(output.view).add(output.exposure).add(fast_).add(wireframe_);
     if (output.view == ViewTransform::Raw) key.add("linear");
     gizmos_.add_key(key, frame);
@@ -132,12 +135,22 @@ class Playblast {
     }
     return key.key();
   }
+  /// Once: a shot has the same lights in all frames.
+  void warn_of_lights(const Scene& scene) {
+    const int left_out = std::exchange(knows_lights_, true) ? 0 : lights_left_out(scene);
+    if (left_out == 0) return;
+    session_.console().warn(fmt::format(
+        "Previews have room for {} lamps and {} suns, the strongest: {} of the shot's {} lights {} left out. "
+        "Pictures of render show all.",
+        kMaxPreviewLamps, kMaxPreviewSuns, left_out, scene.area_lights.size() + scene.suns.size(),
+        left_out == 1 ? "is" : "are"));
+  }
   DisplayImage draw(int frame, const Scene& scene, GizmoMarks marks) {
     const Shot& shot = run_.shot();
     const ScopedStage stage(session_.context().times, "preview");
-    DisplayImage picture =
-        preview_->draw(scene, shot.render.params.width, shot.render.params.height, shot.output.view,
-                       static_cast<float>(shot.output.exposure), {fast_, wireframe_, std::move(marks)});
+    DisplayImage picture = preview_->draw(scene, shot.render.params.width, shot.render.params.height, shot.output.view,
+                                          static_cast<float>(shot.output.exposure),
+                                          {fast_, wireframe_, std::move(marks), shot.render.params.window});
     picture.linear = shot.output.view == ViewTransform::Raw;
     scenes_.draw_legend(picture);
     if (shot.output.burn_in) burn_in(picture, frame_words(shot.settings, frame));
@@ -151,6 +164,7 @@ class Playblast {
   Gizmos gizmos_;
   std::optional<PreviewCut> cut_;  ///< of the tetrahedra, where they are shown
   bool fast_, wireframe_;
+  bool knows_lights_ = false;         ///< whether warn_of_lights was asked
   std::unique_ptr<Preview> preview_;  ///< made when the first frame has to be drawn
   double saved_seconds_ = 0;
 };
@@ -165,6 +179,8 @@ int run_preview(const PreviewOptions& options) {
   const FrameSpan frames = session.frames();
   Outputs outputs(shot.output.directory, shot.settings.name + ".preview", session.context().log);
   ShotRun run(shot, session.context());
+  const bool has_movie = shot.output.movie && session.is_whole() && frames.count() > 1;
+  if (has_movie) require_movie_path(outputs);
   session.prepare(outputs, run);
   Playblast playblast(session, run, outputs, options);
   playblast.remove_outdated(frames);
@@ -184,8 +200,7 @@ int run_preview(const PreviewOptions& options) {
   report.files_kept = frames.count() - written;
   report.files_saved_seconds = playblast.saved_seconds();
   report.made.push_back(outputs.frame_path(frames.first, "png") + " .. " + outputs.frame_path(frames.last, "png"));
-  if (shot.output.movie && session.is_whole() && frames.count() > 1)
-    report.made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
+  if (has_movie) report.made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));
   session.finish(report);
   return 0;
 }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "tool/bodies/simulate_key.h"
 #include "tool/commands/commands.h"
 #include "tool/commands/picture_wishes.h"
 #include "tool/stages/frame_pipeline.h"
 #include "tool/stages/movie_stage.h"
-#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 namespace {
@@ -83,6 +83,8 @@ int run_render(const ShotOptions& options, RenderPart part) {
   const FrameSpan frames = session.frames();
   ShotRun run(shot, session.context_beside());
   Outputs outputs(session.shot().output.directory, session.shot().settings.name, session.context().log);
+  const bool all = part == RenderPart::All;
+  if (all && makes_movie(shot, frames)) require_movie_path(outputs);
   CacheUse& use = session.prepare(outputs, run);
   SceneStage scenes(run);
   PictureStage pictures(scenes, shot, outputs, session.context());
@@ -100,7 +102,6 @@ int run_render(const ShotOptions& options, RenderPart part) {
   std::vector<std::string> made;
   if (shot.output.png) made.push_back(made_line(outputs, frames, "png"));
   if (shot.output.exr) made.push_back(made_line(outputs, frames, "exr"));
-  const bool all = part == RenderPart::All;
   if (all) say_what_is_not_made(shot, frames, session.context().log);
   if (all && makes_movie(shot, frames))
     made.push_back(make_movie(shot, frames.first, frames.last, outputs, session.context()));

@@ -9,11 +9,11 @@
 
 #include "core/base/error.h"
 #include "core/base/timer.h"
+#include "tool/bodies/simulate_key.h"
+#include "tool/cache/atomic_file.h"
 #include "tool/shot/shot_load.h"
-#include "tool/stages/atomic_file.h"
 #include "tool/stages/picture_stage.h"
 #include "tool/stages/settings_snapshot.h"
-#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 namespace {
@@ -143,8 +143,10 @@ void Session::finish(const RunReport& report) {
   for (const auto& [stage, entry] : report.stages)
     console_.debug(fmt::format("stage {}: {:.3f} s in {} calls", stage, entry.seconds, entry.calls));
   if (const double limit = cache_limit(); limit > 0 && cache_.stored_bytes() > 0) {
-    cut_cache(cache_, limit);
-    if (const double bytes = cache_size(cache_); bytes > limit)
+    const CacheRemoval removal = cut_cache(cache_, limit);
+    if (!removal.problem.empty())
+      console_.warn(removal.problem);
+    else if (const double bytes = cache_size(cache_); bytes > limit)
       console_.warn(
           fmt::format("{}: the results of this shot that the cache holds need {}, more than its limit of {}; "
                       "none of them was removed. Raise --cache-limit or output.cache_limit.",

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "tool/bodies/run_context.h"
+#include "tool/cache/cache_use.h"
 #include "tool/commands/interruption.h"
+#include "tool/outputs/outputs.h"
 #include "tool/report/console.h"
 #include "tool/report/run_report.h"
 #include "tool/shot/shot.h"
-#include "tool/stages/cache_use.h"
-#include "tool/stages/outputs.h"
-#include "tool/stages/run_context.h"
 
 namespace softreel {
 

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include "tool/bodies/simulate_key.h"
 #include "tool/commands/commands.h"
 #include "tool/stages/shot_run.h"
-#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "tool/cache/cache_use.h"
+#include "tool/cache/json_text.h"
 #include "tool/commands/commands.h"
-#include "tool/stages/cache_use.h"
-#include "tool/stages/json_text.h"
 #include "tool/stages/shot_status.h"
 
 namespace softreel {

@@ -17,11 +17,11 @@
 #include "core/tetmesh/improvement/angle_improvement.h"
 #include "core/tetmesh/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
+#include "tool/cache/atomic_file.h"
+#include "tool/cache/json_text.h"
 #include "tool/commands/commands.h"
 #include "tool/report/cut_picture.h"
 #include "tool/shot/codecs.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/json_text.h"
 
 namespace softreel {
 namespace {

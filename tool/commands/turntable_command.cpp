@@ -147,6 +147,8 @@ int run_turntable(const ShotOptions& options, int count) {
     session.console().warn(fmt::format("--turntable turns round one frame: {} is taken.", frame));
   ShotRun run(shot, session.context());
   Outputs outputs(shot.output.directory, shot.settings.name + ".turntable", session.context().log);
+  const bool has_movie = shot.output.movie && shot.output.png && count > 1;
+  if (has_movie) require_movie_path(outputs);
   session.prepare(outputs, run);
   SceneStage scenes(run);
   Scene scene = scenes.at(frame, run.skin(frame, moment_of(shot.render)));
@@ -175,8 +177,7 @@ int run_turntable(const ShotOptions& options, int count) {
   for (const auto& [extension, wanted] : {std::pair("png", shot.output.png), std::pair("exr", shot.output.exr)})
     if (wanted) report.made.push_back(outputs.frame_path(1, extension) + " .. " + outputs.frame_path(count, extension));
   if (shot.output.movie && !shot.output.png) session.context().log.info(kNoMovieWithoutPngs);
-  if (shot.output.movie && shot.output.png && count > 1)
-    report.made.push_back(make_movie(shot, 1, count, outputs, session.context()));
+  if (has_movie) report.made.push_back(make_movie(shot, 1, count, outputs, session.context()));
   session.finish(report);
   return 0;
 }

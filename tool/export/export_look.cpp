@@ -7,7 +7,7 @@
 
 #include <fmt/ranges.h>
 
-#include "tool/stages/atomic_file.h"
+#include "tool/cache/atomic_file.h"
 
 namespace softreel {
 namespace {

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "tool/bodies/simulate_key.h"
+#include "tool/cache/byte_hasher.h"
 #include "tool/export/body_samples.h"
 #include "tool/export/export_colors.h"
 #include "tool/stages/appearance_key.h"
-#include "tool/stages/byte_hasher.h"
-#include "tool/stages/simulate_key.h"
 
 namespace softreel {
 namespace {

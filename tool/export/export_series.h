@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "tool/cache/atomic_file.h"
 #include "tool/export/exporter.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/outputs.h"
+#include "tool/outputs/outputs.h"
 #include "tool/stages/shot_run.h"
 
 namespace softreel {
@@ -37,7 +37,6 @@ class ExportSeries {
 
   const ExportFormat& format() const { return format_; }
   bool has(std::size_t body) const;
-  int sample_count() const { return times_.count; }
   /// False if the file that holds this sample is there, made of the same.
   bool wants(int sample);
   /// A wanted sample; sample.body counts in the run. seconds: what making it took.

@@ -13,8 +13,8 @@
 #include "core/mesh/surface_mesh.h"
 #include "render/scene/camera.h"
 #include "render/scene/material.h"
+#include "tool/bodies/body_stage.h"
 #include "tool/shot/shot.h"
-#include "tool/stages/body_stage.h"
 
 namespace softreel {
 

@@ -6,9 +6,9 @@
 
 #include "core/base/check.h"
 #include "render/image/image_io.h"
+#include "tool/cache/atomic_file.h"
 #include "tool/export/export_colors.h"
 #include "tool/export/export_look.h"
-#include "tool/stages/atomic_file.h"
 
 namespace softreel {
 namespace {

@@ -7,6 +7,7 @@
 #include "tool/export/export_colors.h"
 #include "tool/export/export_look.h"
 #include "tool/export/usda_text.h"
+#include "tool/shot/plain_path.h"
 
 namespace softreel {
 namespace {
@@ -19,8 +20,8 @@ std::string color_text(const Vec3f& v) {
 /// whole where that leads elsewhere, for the folder lies behind a link.
 std::string asset(const std::string& path, const std::string& folder) {
   namespace fs = std::filesystem;
-  const fs::path base = fs::absolute(folder.empty() ? "." : folder).lexically_normal(),
-                 file = fs::absolute(path).lexically_normal(), text = file.lexically_relative(base);
+  const fs::path base = plain_path(fs::absolute(folder.empty() ? "." : folder)), file = plain_path(fs::absolute(path)),
+                 text = file.lexically_relative(base);
   std::error_code none;
   const bool leads_there = fs::equivalent(base / text, file, none);
   std::string relative = (leads_there || !fs::exists(file, none) ? text : file).generic_string();

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "tool/stages/json_text.h"
+#include "tool/cache/json_text.h"
 
 namespace softreel {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "tool/stages/json_text.h"
+#include "tool/cache/json_text.h"
 
 namespace softreel {
 namespace {

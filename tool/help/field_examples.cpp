@@ -18,6 +18,7 @@ const std::map<std::string, std::string>& own_examples() {
       {".fit", "1.2"},
       {".edge", "0.03"},
       {".thickness", "0.02"},
+      {".crease_deg", "40"},
       {"body.*.error", "\"0.3%\""},
       {"solver.error", "\"1%\""},
       {"body.*.material", "\"rubber\""},

@@ -9,12 +9,12 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "tool/cache/json_text.h"
 #include "tool/help/field_examples.h"
 #include "tool/help/field_places.h"
 #include "tool/shot/preset_library.h"
 #include "tool/shot/schema_tables.h"
 #include "tool/shot/shot_layers.h"
-#include "tool/stages/json_text.h"
 
 namespace softreel {
 namespace {

@@ -21,7 +21,7 @@ Topic exit_status() {
        {"2",
         "The input is wrong (an option, a field, a file) or a part is not built in; nothing was begun. The message "
         "says what is accepted."},
-       {"130", "Interrupted by Ctrl-C; what was finished is kept."}}};
+       {"130", "Interrupted by Ctrl-C, SIGTERM or a closed terminal; what was finished is kept."}}};
 }
 
 }  // namespace

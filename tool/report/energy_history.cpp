@@ -7,9 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tool/stages/body_frame_bytes.h"
-#include "tool/stages/json_text.h"
-#include "tool/stages/stage_names.h"
+#include "tool/bodies/body_frame_bytes.h"
+#include "tool/cache/json_text.h"
+#include "tool/cache/stage_names.h"
 
 namespace softreel {
 namespace {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "render/image/flip.h"
+#include "tool/cache/base64.h"
 #include "tool/report/markup.h"
-#include "tool/stages/base64.h"
 
 namespace softreel {
 namespace {

@@ -6,10 +6,10 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "tool/cache/json_text.h"
+#include "tool/cache/stage_names.h"
 #include "tool/report/console.h"
 #include "tool/report/version.h"
-#include "tool/stages/json_text.h"
-#include "tool/stages/stage_names.h"
 
 namespace softreel {
 

@@ -11,8 +11,8 @@
 #include "core/base/error.h"
 #include "render/image/image_io.h"
 #include "render/pathtrace/path_tracer.h"
-#include "render/pathtrace/ray_scene.h"
-#include "tool/stages/atomic_file.h"
+#include "render/pathtrace/rays/ray_scene.h"
+#include "tool/cache/atomic_file.h"
 
 namespace softreel {
 namespace {

@@ -15,9 +15,9 @@
 #include "core/base/library_version.h"
 #include "core/base/parallel.h"
 #include "render/image/image_library_versions.h"
+#include "tool/cache/json_text.h"
+#include "tool/cache/process.h"
 #include "tool/shot/preset_library.h"
-#include "tool/stages/json_text.h"
-#include "tool/stages/process.h"
 
 namespace softreel {
 namespace {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/base/nearest_name.h"
+#include "tool/shot/plain_path.h"
 
 namespace softreel {
 namespace {
@@ -266,12 +267,12 @@ Codec<std::string> file_path() {
   codec.parse = [parse = codec.parse](const Place& place, const TomlValue& value) {
     const std::filesystem::path path = parse(place, value);
     if (path.native().find('\0') != std::string::npos) throw value_error(place, value, "it holds a null character");
-    if (value.origin.line == 0 || path.is_absolute()) return path.lexically_normal().string();
-    return (std::filesystem::path(value.origin.file).parent_path() / path).lexically_normal().string();
+    if (value.origin.line == 0 || path.is_absolute()) return plain_path(path).string();
+    return plain_path(std::filesystem::path(value.origin.file).parent_path() / path).string();
   };
   codec.print = [](const std::string& value) -> std::optional<TomlValue> {
     if (value.empty()) return std::nullopt;
-    return toml_value(std::filesystem::absolute(value).lexically_normal().string());
+    return toml_value(plain_path(std::filesystem::absolute(value)).string());
   };
   return codec;
 }

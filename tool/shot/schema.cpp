@@ -102,13 +102,6 @@ std::string shot_reference() {
   return out;
 }
 
-std::vector<std::string> field_paths() {
-  std::vector<std::string> paths;
-  for (const FieldText& text : field_texts())
-    if (!text.is_table) paths.push_back(text.path);
-  return paths;
-}
-
 const FieldText* find_field(const std::string& path) {
   const std::string plain = without_positions(path);
   if (plain.rfind("body.", 0) == 0)  // body.FIELD: of the only body

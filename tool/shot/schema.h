@@ -27,9 +27,6 @@ const std::vector<FieldText>& field_texts();
 /// The reference of all fields, as Markdown.
 std::string shot_reference();
 
-/// Paths of all fields that hold values, for completion.
-std::vector<std::string> field_paths();
-
 /// What the table says of a field, named as for explain_field; null if there is none.
 const FieldText* find_field(const std::string& path);
 

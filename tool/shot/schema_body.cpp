@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "core/tetmesh/tet_mesh_file.h"
-#include "render/pathtrace/sheen.h"
+#include "render/pathtrace/materials/sheen.h"
 #include "tool/shot/codecs.h"
 #include "tool/shot/keyed_appearance.h"
 #include "tool/shot/schema_tables.h"
@@ -15,6 +15,8 @@ namespace {
 constexpr std::int64_t kMostTets = 500000000;
 /// From 0.5 on the material is incompressible, which has no finite stiffness; near it the numbers degrade.
 constexpr Range kPoissonRatio{0, 0.499, false};
+/// Between the normals of two triangles.
+constexpr Range kCrease{0, 180, true};
 /// What takes all light has no finite thickness.
 constexpr Range kTint{0.001, 1, false};
 /// Within what single precision can walk through.
@@ -79,7 +81,8 @@ void add_motion_fields(Table<S>& table) {
            "none")
       .add("grab", &S::grab, absent_if_zero(toggle()), "",
            "Takes the points where they are at the first active frame, without a jump, and moves them on from there as "
-           "keys or what is followed moves.",
+           "keys or what is followed moves. In a dynamic shot it holds from the next step on, so for two frames or "
+           "more.",
            "false");
 }
 
@@ -138,6 +141,9 @@ void add_placement_fields(Table<BodySettings>& t) {
            "Turns the body about the fixed axes: x first, then y, then z.")
       .add("material", &B::material, text(), "", "Name of a [material.NAME].",
            "the only material, or the one named \"default\", which is built in where there is none")
+      .add("crease_deg", &B::crease_deg, number(kCrease), "degrees",
+           "Edges look hard where the normals of two triangles differ by more than this at rest: 180 is smooth "
+           "everywhere, 40 suits what is made of flat and round parts.")
       .add("tets", &B::tets, absent_if_zero(whole<std::int64_t>(1, kMostTets)), "",
            "How many tetrahedra fill the body, within 5 %; instead of edge, error or tetrahedra.",
            std::to_string(kDefaultTets))

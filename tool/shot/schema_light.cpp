@@ -71,7 +71,8 @@ void add_light_fields(Table<LightSettings>& t) {
   t.require("type", &L::kind, choice<LightKind>(names), "",
             "\"area\", \"disk\": a rectangle or ellipse that shines from one side; \"sphere\": a ball; \"sun\": a "
             "distant disk.")
-      .add("center", &L::center, keyed(vector_of<Vec3>(in_single(kAnyNumber)), "m"), "m", "Lamps: its middle.")
+      .add("center", &L::center, keyed(vector_of<Vec3>(in_single(kAnyNumber)), "m"), "m",
+           "Lamps: its middle; where keys move it, it has no motion blur.")
       .add("aim", &L::aim, keyed(vector_of<Vec3>(in_single(kAnyNumber)), "m"), "m", "area, disk: the point it faces.")
       .add("size", &L::size, vector_of<Vec2>(in_single(kPositive), "[width, height]"), "m",
            "area, disk: its edges or diameters.")
@@ -79,8 +80,9 @@ void add_light_fields(Table<LightSettings>& t) {
       .add("color", &L::color, keyed(vector_of<Vec3>(in_single(kNotNegative), kColorType), "linear"), "linear",
            "Colour of its light.")
       .add("power", &L::power, keyed(number(in_single(kNotNegative)), "W"), "W",
-           "Of the whole lamp; its radiance is power / (4 area), of a sphere power / (pi surface).")
-      .add("visible", &L::visible, toggle(), "", "Lamps: whether the camera sees the lamp itself.")
+           "Of a sphere all it emits; area and disk have the radiance power / (4 area) and emit pi / 4 of it.")
+      .add("visible", &L::visible, toggle(), "",
+           "Lamps: whether the camera sees the lamp itself, which adds its light to what is behind and hides nothing.")
       .add("direction", &L::direction, keyed(vector_of<Vec3>(in_single(kAnyNumber)), ""), "",
            "sun: the way its light travels.")
       .add("irradiance", &L::irradiance, keyed(number(in_single(kNotNegative)), "W/m^2"), "W/m^2",

@@ -146,7 +146,8 @@ const Table<Ground>& ground_table() {
         .add("checker_color", &G::checker_color, vector_of<Vec3f>(kShare, kColorType), "linear",
              "Colour of every other square.")
         .add("shadow_catcher", &G::shadow_catcher, toggle(), "",
-             "The camera sees the shadow on it, as alpha in PNG and EXR, and nothing of the surroundings.");
+             "The camera sees the shadow on it, as one grey alpha (PNG, EXR), and no surroundings. Glass casts an "
+             "opaque shadow; light of bodies that shine counts for none.");
     return t;
   }();
   return table;
@@ -229,7 +230,7 @@ const Table<RenderSettings>& render_table() {
             "shutter_closing", [](auto& r) -> auto& { return r.curve.closing; }, single(kShare), "of shutter",
             "How long it takes to close.")
         .add("crop", &R::crop, vector_of<Vec4>(kShare, "[left, top, right, bottom]"), "of the picture",
-             "Computes this part only, with the same pixels.")
+             "Computes this part only, with the same pixels; with noise its edges may get other numbers of samples.")
         .add("overscan", &R::overscan, number(kShare), "of the picture", "Adds this much of the view at each side.")
         .add(
             "auxiliary", [](auto& r) -> auto& { return r.params.auxiliary; }, toggle(), "",

@@ -171,11 +171,15 @@ struct BodySettings {
   bool optimize = false;                   ///< makes the worst angles of the tetrahedra better
   double thickness = 0;                    ///< m, of open sheets; 0: none
   std::optional<RotationMethod> rotation;  ///< instead of the solver's
+  double crease_deg = 180;                 ///< edges at which triangles meet by more, at rest, are shaded hard
   std::vector<RegionSettings> regions;
   std::vector<PinSettings> pins;
   std::vector<PullSettings> pulls;
   Origin origin;       ///< of the table
   Origin mesh_origin;  ///< of the mesh field
+
+  /// Whether any edge can be shaded hard.
+  bool has_creases() const { return crease_deg < 180; }
 };
 
 enum class CameraMode {
@@ -266,7 +270,7 @@ struct GoldenSettings {
   int max_width = 480, max_samples = 16;
 };
 
-/// The error dial: what it chooses is 0 in the shot, and filled in body by body (tool/stages/dial_stage.h).
+/// The error dial: what it chooses is 0 in the shot, and filled in body by body (tool/bodies/dial_stage.h).
 struct DialSettings {
   double error = 0;                 ///< wanted error of the motion over the diagonal of a body's box; 0: no dial
   std::int64_t max_tets = 1000000;  ///< of a body

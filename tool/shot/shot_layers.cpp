@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "tool/shot/codecs.h"
+#include "tool/shot/plain_path.h"
 #include "tool/shot/preset_library.h"
 #include "tool/shot/schema.h"
 #include "tool/shot/schema_tables.h"
@@ -69,7 +70,7 @@ std::vector<std::pair<std::string, Origin>> used_presets(const TomlValue& use) {
     const std::filesystem::path path = *item.text();
     const bool keep = item.origin.line == 0 || path.is_absolute();
     const auto folder = std::filesystem::path(item.origin.file).parent_path();
-    presets.emplace_back((keep ? path : folder / path).lexically_normal().string(), item.origin);
+    presets.emplace_back(plain_path(keep ? path : folder / path).string(), item.origin);
   }
   return presets;
 }

@@ -24,6 +24,10 @@ inline constexpr const char* kQuality = "quality";
 /// Splits "path=value". Throws input_error if there is no '='.
 Override parse_override(const std::string& text);
 
+/// The path of an override of this shot in one spelling, the name of the only body in it. Throws input_error for what
+/// is no path.
+std::string full_path(const Override& one, const Shot& shot);
+
 /// Reads a shot; presets named in `use` come first, then the file's own values, then those of kQuality's file, then the
 /// overrides. Paths in a file are relative to it, paths in overrides to the working directory. Throws input_error with
 /// file, line and column, the value, what is accepted, and the nearest known name for unknown ones.

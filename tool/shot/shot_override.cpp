@@ -85,9 +85,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }
 
 /// `body.FIELD` means the only body: puts its name in between.
-void name_the_body(const TomlValue& document, const Override& one, std::vector<Step>& steps) {
+void name_the_body(const std::vector<std::string>& bodies, const Override& one, std::vector<Step>& steps) {
   if (steps.size() < 2 || steps[0].key != "body" || steps[1].is_index) return;
-  const std::vector<std::string> bodies = keys_of(document.find("body"));
   const std::vector<std::string> fields = body_table().names();
   if (bodies.empty() || (contains(bodies, steps[1].key) && steps.size() > 2)) return;
   if (contains(fields, steps[1].key) && bodies.size() == 1) {
@@ -136,6 +135,12 @@ TomlValue& follow(TomlValue& at, const Step& step, const Override& one, const st
   return at.table()->back().value;
 }
 
+/// Adds a step to a path.
+void walk(const Step& step, std::string& path) {
+  path += step.is_index ? fmt::format("[{}]", step.index)
+                        : fmt::format("{}{}", path.empty() ? "" : ".", key_text(step.key));
+}
+
 /// Removes the fields that the one which is set excludes.
 void erase_alternatives(TomlValue& table, const std::string& pattern, const std::string& key) {
   for (const Alternatives& group : alternatives())
@@ -178,9 +183,19 @@ TomlValue parse_override_value(const Override& override_value) {
   return word;
 }
 
+std::string full_path(const Override& one, const Shot& shot) {
+  std::vector<Step> steps = parse_steps(one);
+  std::vector<std::string> bodies;
+  for (const BodySettings& body : shot.bodies) bodies.push_back(body.name);
+  name_the_body(bodies, one, steps);
+  std::string path;
+  for (const Step& step : steps) walk(step, path);
+  return path;
+}
+
 void apply_override(TomlValue& document, const Override& override_value) {
   std::vector<Step> steps = parse_steps(override_value);
-  name_the_body(document, override_value, steps);
+  name_the_body(keys_of(document.find("body")), override_value, steps);
   check_material_exists(document, override_value, steps);
   TomlValue value = parse_override_value(override_value);
   TomlValue* at = &document;
@@ -191,11 +206,10 @@ void apply_override(TomlValue& document, const Override& override_value) {
     if (&step == &steps.back() && !step.is_index && at->table() != nullptr && !is_off)
       erase_alternatives(*at, pattern, step.key);
     at = &follow(*at, step, override_value, walked);
+    walk(step, walked);
     if (step.is_index) {
-      walked += fmt::format("[{}]", step.index);
       pattern += "[]";
     } else {
-      walked += fmt::format("{}{}", walked.empty() ? "" : ".", key_text(step.key));
       pattern += fmt::format("{}{}", pattern.empty() ? "" : ".", named ? "*" : step.key);
     }
   }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/scene/material.h"
-#include "tool/stages/key.h"
+#include "tool/cache/key.h"
 
 namespace softreel {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/timer.h"
-#include "tool/stages/stage_names.h"
+#include "tool/cache/stage_names.h"
 #include "tool/stages/work_stream.h"
 
 namespace softreel {

@@ -8,7 +8,7 @@
 
 #include "core/constraints/pulls.h"
 #include "core/constraints/targets.h"
-#include "tool/stages/simulate_key.h"
+#include "tool/bodies/simulate_key.h"
 
 namespace softreel {
 namespace {

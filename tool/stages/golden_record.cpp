@@ -10,12 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "tool/bodies/weight_maps.h"
+#include "tool/cache/atomic_file.h"
+#include "tool/cache/base64.h"
+#include "tool/cache/json_text.h"
 #include "tool/shot/shot_load.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/base64.h"
-#include "tool/stages/json_text.h"
 #include "tool/stages/settings_snapshot.h"
-#include "tool/stages/weight_maps.h"
 
 namespace softreel {
 namespace {

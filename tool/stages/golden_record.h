@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tool/stages/outputs.h"
+#include "tool/outputs/outputs.h"
 #include "tool/stages/shot_run.h"
 
 namespace softreel {

@@ -126,4 +126,11 @@ HeatLegend heat_legend(HeatQuantity quantity, const HeatRange& range) {
                           unit_of(quantity, std::max(std::abs(range.low), std::abs(range.high))));
 }
 
+std::string small_legend_warning(const HeatRange& range, int width, int height) {
+  return fmt::format(
+      "The pictures, {} x {} pixels, have no room for the letters of the heat's legend, whose bar goes from {:.4g} to "
+      "{:.4g} (SI units). Accepted: 160 x 120 pixels or more. Make them larger.",
+      width, height, range.low, range.high);
+}
+
 }  // namespace softreel

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "render/image/heat_legend.h"
+#include "tool/bodies/body_stage.h"
 #include "tool/shot/shot.h"
-#include "tool/stages/body_stage.h"
 
 namespace softreel {
 
@@ -50,5 +51,7 @@ HeatRange find_heat_range(ShotRun& run, HeatQuantity quantity);
 
 /// The legend of a quantity: its name, and labels in a unit of its size.
 HeatLegend heat_legend(HeatQuantity quantity, const HeatRange& range);
+/// Of a picture, of width x height pixels, whose legend has no letters.
+std::string small_legend_warning(const HeatRange& range, int width, int height);
 
 }  // namespace softreel

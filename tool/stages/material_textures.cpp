@@ -9,9 +9,10 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
+#include "render/image/image_io.h"
 #include "render/image/texture_pyramid.h"
-#include "tool/stages/at_field.h"
-#include "tool/stages/atomic_file.h"
+#include "tool/bodies/at_field.h"
+#include "tool/cache/atomic_file.h"
 
 namespace softreel {
 namespace {
@@ -113,6 +114,18 @@ void MaterialTextures::add_key(KeyHasher& key, const BodySettings& body, const L
   if (!t.bump.empty()) key.add(t.bump_height);
   for (const Triangle& corners : loaded.surface.triangle_textures) key.add(corners);
   for (const Vec2& at : loaded.surface.texture_coordinates) key.add(at.x()).add(at.y());
+}
+
+double MaterialTextures::count_texels() const {
+  double texels = 0;
+  for (const std::string& name : worn_materials(shot_))
+    for (const TextureFile& file : files_of(material(name).textures)) {
+      if (file.path.empty()) continue;
+      const auto [width, height] =
+          at_field(material(name).origin, field_path(name, file.field), [&] { return picture_size(file.path); });
+      texels += static_cast<double>(width) * height;
+    }
+  return texels;
 }
 
 void MaterialTextures::load() {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "render/scene/texture.h"
+#include "tool/bodies/loaded_body.h"
+#include "tool/cache/key.h"
 #include "tool/shot/shot.h"
-#include "tool/stages/key.h"
-#include "tool/stages/loaded_body.h"
 
 namespace softreel {
 
@@ -29,6 +29,9 @@ class MaterialTextures {
 
   /// Everything that the coloring of a body depends on beside its shape; nothing for a material of one look.
   void add_key(KeyHasher& key, const BodySettings& body, const LoadedBody& loaded) const;
+
+  /// Of the pictures that load() decodes, by their headers. Throws input_error.
+  double count_texels() const;
 
   /// Decodes the files that are not decoded yet. Throws input_error.
   void load();

@@ -9,21 +9,22 @@
 
 #include "core/base/error.h"
 #include "core/base/timer.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/byte_hasher.h"
-#include "tool/stages/process.h"
+#include "tool/cache/atomic_file.h"
+#include "tool/cache/byte_hasher.h"
+#include "tool/cache/process.h"
 
 namespace softreel {
 namespace {
 
-/// The frames as ffmpeg's concat demuxer wants them: unlike its sequence pattern, it takes any number and any name.
+/// The frames as ffmpeg's concat demuxer wants them: unlike its sequence pattern, it takes any number and, once it is
+/// told that a name is no pattern either, any name.
 std::string frame_list(int first, int last, const Outputs& outputs) {
   std::string list;
   for (int frame = first; frame <= last; ++frame) {
     std::string path = std::filesystem::absolute(outputs.frame_path(frame, "png")).string();
     for (std::size_t i = path.find('\''); i != std::string::npos; i = path.find('\'', i + 4))
       path.replace(i, 1, "'\\''");
-    list += "file '" + path + "'\n";
+    list += "file '" + path + "'\noption pattern_type none\n";
   }
   return list;
 }
@@ -43,6 +44,11 @@ std::string filters(const Shot& shot) {
          "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
 }
 
+/// The file as ffmpeg takes it for no option and no address of a network, whatever its name.
+std::string file_address(const std::string& path) {
+  return "file:" + std::filesystem::absolute(path).string();
+}
+
 /// The words of a text without quotes.
 void add_words(const std::string& text, std::vector<std::string>& words) {
   std::istringstream in(text);
@@ -53,13 +59,13 @@ std::vector<std::string> ffmpeg_command(const Shot& shot, int frames, const std:
                                         const std::string& target) {
   std::vector<std::string> words;
   add_words(fmt::format("ffmpeg -hide_banner -loglevel error -y -r {} -f concat -safe 0 -i", shot.settings.fps), words);
-  words.push_back(list);
+  words.push_back(file_address(list));
   add_words(fmt::format("-frames:v {} -vf {}", frames, filters(shot)), words);
   // What the numbers mean: the pictures are sRGB.
   add_words("-colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv", words);
   add_words("-c:v libx264 -crf 16 -preset medium -fflags +bitexact -flags:v +bitexact -movflags +faststart -f mp4",
             words);
-  words.push_back(target);
+  words.push_back(file_address(target));
   return words;
 }
 
@@ -74,6 +80,16 @@ StageKey movie_key(const Shot& shot, int first, int last, const Outputs& outputs
 }
 
 }  // namespace
+
+void require_movie_path(const Outputs& outputs) {
+  const std::string path = std::filesystem::absolute(outputs.path("mp4")).string();
+  if (path.find_first_of("\n\r") == std::string::npos) return;
+  throw input_error(
+      fmt::format("{}: no movie can be made there, for the path holds a line break, which ends a path in ffmpeg's list "
+                  "of frames.\n  Accepted: paths of one line. Choose another --output or shot.name, or set "
+                  "output.movie = false.",
+                  path));
+}
 
 std::string make_movie(const Shot& shot, int first, int last, Outputs& outputs, const RunContext& context) {
   const std::string path = outputs.path("mp4");

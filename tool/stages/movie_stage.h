@@ -3,11 +3,14 @@
 
 #include <string>
 
+#include "tool/bodies/run_context.h"
+#include "tool/outputs/outputs.h"
 #include "tool/shot/shot.h"
-#include "tool/stages/outputs.h"
-#include "tool/stages/run_context.h"
 
 namespace softreel {
+
+/// Throws input_error if ffmpeg cannot take the path of the movie and its frames: asked before long work.
+void require_movie_path(const Outputs& outputs);
 
 /// Encodes the PNG frames [first, last] to DIR/SHOT.mp4 (H.264); nothing to do if it is there, made of the same frames.
 /// Returns its path. Throws work_error if ffmpeg is missing or fails, with what it said.

@@ -38,11 +38,14 @@ StageKey PictureStage::file_key(int frame, const std::string& extension, const S
   return key.key();
 }
 
+PictureStage::File PictureStage::file_of(int frame, const std::string& extension, const StageKey& picture) const {
+  return {outputs_.frame_path(frame, extension), extension, file_key(frame, extension, picture)};
+}
+
 std::vector<PictureStage::File> PictureStage::files(int frame, const StageKey& picture) const {
   std::vector<File> files;
   for (const auto& [extension, wanted] : {std::pair("png", shot_.output.png), std::pair("exr", shot_.output.exr)})
-    if (wanted)
-      files.push_back({outputs_.frame_path(frame, extension), extension, file_key(frame, extension, picture)});
+    if (wanted) files.push_back(file_of(frame, extension, picture));
   return files;
 }
 
@@ -64,10 +67,10 @@ bool PictureStage::is_kept(int frame) const {
 
 bool PictureStage::is_stored(int frame) const {
   const StageKey trace = trace_key(frame);
-  if (!shot_.output.exr && context_.cache.has(kPictureStage, file_key(frame, kLinear, trace))) return true;
+  if (!shot_.output.exr && is_picture_stored(context_.cache, file_key(frame, kLinear, trace))) return true;
   const std::vector<File> wanted = files(frame, trace);
   return std::all_of(wanted.begin(), wanted.end(),
-                     [&](const File& file) { return context_.cache.has(kPictureStage, file.key); });
+                     [&](const File& file) { return is_picture_stored(context_.cache, file.key); });
 }
 
 double PictureStage::seconds(int frame) const {
@@ -77,11 +80,25 @@ double PictureStage::seconds(int frame) const {
   return seconds;
 }
 
+/// By path: of what the shot asks for, and of the known files of a kind that it asked for once.
+std::map<std::string, StageKey> PictureStage::own_keys(int first, int last) const {
+  std::map<std::string, StageKey> keys;
+  for (int frame = first; frame <= last; ++frame) {
+    const StageKey trace = trace_key(frame);
+    for (const auto& [extension, wanted] : {std::pair("png", shot_.output.png), std::pair("exr", shot_.output.exr)}) {
+      const File one = file_of(frame, extension, trace);
+      if (wanted || outputs_.entry(one.path)) keys[one.path] = one.key;
+    }
+  }
+  return keys;
+}
+
 int PictureStage::remove_outdated(int first, int last) {
-  std::map<std::string, StageKey> keys;  // by path
-  for (int frame = first; frame <= last; ++frame)
-    for (const File& file : files(frame, trace_key(frame))) keys[file.path] = file.key;
-  return outputs_.remove_outdated(keys);
+  return outputs_.remove_outdated(own_keys(first, last));
+}
+
+bool PictureStage::has_outdated(int first, int last) const {
+  return outputs_.has_outdated(own_keys(first, last));
 }
 
 int PictureStage::count_replaced(int first, int last) const {

@@ -1,6 +1,7 @@
 /// One frame's picture files, traced only if they cannot be had otherwise.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -8,8 +9,8 @@
 
 #include "render/image/burn_in.h"
 #include "render/pathtrace/path_tracer.h"
-#include "tool/stages/outputs.h"
-#include "tool/stages/picture_record.h"
+#include "tool/cache/picture_record.h"
+#include "tool/outputs/outputs.h"
 #include "tool/stages/scene_stage.h"
 
 namespace softreel {
@@ -49,9 +50,11 @@ class PictureStage {
   bool is_stored(int frame) const;
   /// What making the frame's files took when they were made.
   double seconds(int frame) const;
-  /// Removes what is under the names of these frames' files and is not theirs: pictures of an older shot, and files
-  /// that nobody knows. Returns how many.
+  /// Removes what is under the names of these frames' files and is not theirs: pictures of an older shot, also of a
+  /// kind, PNG or EXR, that the shot as it is now does not ask for; and files that nobody knows. Returns how many.
   int remove_outdated(int first, int last);
+  /// Whether that would remove any.
+  bool has_outdated(int first, int last) const;
 
   /// Of these frames, those that have a file which is of another key, or of none, in the manifest.
   int count_replaced(int first, int last) const;
@@ -70,6 +73,8 @@ class PictureStage {
   void note_linear(int frame, const StageKey& picture, const PictureRecord& linear);
   Bytes encode_display(int frame, const Bytes& half) const;
   StageKey file_key(int frame, const std::string& extension, const StageKey& picture) const;
+  File file_of(int frame, const std::string& extension, const StageKey& picture) const;
+  std::map<std::string, StageKey> own_keys(int first, int last) const;
 
   const SceneStage& scenes_;
   const Shot& shot_;

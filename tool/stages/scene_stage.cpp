@@ -1,15 +1,14 @@
 #include "tool/stages/scene_stage.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "render/image/image_io.h"
+#include "tool/cache/atomic_file.h"
 #include "tool/stages/appearance_key.h"
-#include "tool/stages/atomic_file.h"
 
 namespace softreel {
 
@@ -62,96 +61,21 @@ void SceneStage::warn_far_from_origin() const {
                   size, farthest, kFarthest * size));
 }
 
-namespace {
-
-/// The picture's upright of a camera that looks straight down or up, as if it had been tilted there from the front.
-Vec3f upright(const Camera& camera) {
-  const Vec3f forward = (camera.target - camera.position).normalized();
-  if (!(forward.cross(Vec3f::UnitY()).norm() <= 1e-3f)) return Vec3f::UnitY();
-  return Vec3f(0, 0, forward.y() < 0 ? -1.0f : 1.0f);
-}
-
-}  // namespace
-
-Camera camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
-  Camera camera;
-  camera.focal_length_mm = static_cast<float>(settings.focal_length_mm.at(frame));
-  camera.sensor_width_mm = static_cast<float>(settings.sensor_width_mm);
-  camera.f_number = static_cast<float>(settings.f_number);
-  if (!settings.focus_distance.keys.empty())
-    camera.focus_distance = static_cast<float>(settings.focus_distance.at(frame));
-  if (settings.mode == CameraMode::Place) {
-    camera.position = settings.position.at(frame).cast<float>();
-    camera.target = settings.target.at(frame).cast<float>();
-    camera.up = upright(camera);
-    return camera;
-  }
-  constexpr double kRadians = std::numbers::pi / 180;
-  const double azimuth = settings.azimuth_deg * kRadians, elevation = settings.elevation_deg * kRadians;
-  const Vec3 toward_camera(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
-                           std::cos(elevation) * std::cos(azimuth));
-  const Vec3 right = Vec3::UnitY().cross(toward_camera).normalized(), up = toward_camera.cross(right);
-  // Slopes of the view at half the picture; the margin makes them smaller.
-  const double half_width = 0.5 * settings.sensor_width_mm / (camera.focal_length_mm * settings.margin);
-  const double half_height = half_width / aspect;
-  const Vec3 target = rest_bounds.center() + settings.shift * rest_bounds.size().y();
-  double distance = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3 p = rest_bounds.min;
-    for (int k = 0; k < 3; ++k)
-      if (corner >> k & 1) p[k] = rest_bounds.max[k];
-    p -= rest_bounds.center();
-    const double depth = p.dot(toward_camera);
-    distance =
-        std::max({distance, depth + std::abs(p.dot(right)) / half_width, depth + std::abs(p.dot(up)) / half_height});
-  }
-  camera.target = target.cast<float>();
-  camera.position = (target + distance * toward_camera).cast<float>();
-  if (std::abs(toward_camera.y()) > 1 - 1e-6) camera.up = up.cast<float>();
-  return camera;
-}
-
-std::optional<double> last_cut(const CameraSettings& settings, double after, double until) {
-  std::optional<double> cut = last_jump(settings.focal_length_mm, after, until);
-  const auto add = [&](const auto& track) { cut = std::max(cut, last_jump(track, after, until)); };
-  if (settings.f_number > 0) add(settings.focus_distance);
-  if (settings.mode != CameraMode::Place) return cut;
-  add(settings.position);
-  add(settings.target);
-  return cut;
-}
-
-std::vector<Camera> camera_motion_at(const CameraSettings& settings, const RenderSettings& render, double frame,
-                                     const Bounds& rest_bounds, double aspect) {
-  if (!(render.shutter > 0)) return {};
-  std::vector<Camera> cameras;
-  // The picture is the shot after a cut: a camera between the two would fly through the scene.
-  const std::optional<double> cut = last_cut(settings, frame - render.shutter, frame);
-  for (int k = 0; k <= render.blur_segments; ++k) {
-    const double time = render.shutter * (static_cast<double>(k) / render.blur_segments - 1);
-    cameras.push_back(camera_at(settings, std::max(frame + time, cut.value_or(frame + time)), rest_bounds, aspect));
-  }
-  const bool stands =
-      std::all_of(cameras.begin(), cameras.end(), [&](const Camera& camera) { return camera == cameras.back(); });
-  return stands ? std::vector<Camera>{} : cameras;
-}
-
-Camera next_camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
-  return camera_at(settings, last_cut(settings, frame, frame + 1) ? frame : frame + 1, rest_bounds, aspect);
-}
-
 SkinRequest skin_request(const RenderSettings& settings) {
   const ChannelSet& channels = settings.params.channels;
-  return {true,
-          settings.shutter,
-          settings.blur_segments,
-          channels.has(PictureChannel::Motion),
-          settings.heat.quantity,
-          channels.has(PictureChannel::Strain)};
+  SkinRequest request = still_request(settings);
+  request.shutter = settings.shutter;
+  request.segments = settings.blur_segments;
+  request.next = channels.has(PictureChannel::Motion);
+  request.strain = channels.has(PictureChannel::Strain);
+  return request;
 }
 
 SkinRequest still_request(const RenderSettings& settings) {
-  return {true, 0, 1, false, settings.heat.quantity, false};
+  SkinRequest request;
+  request.heat = settings.heat.quantity;
+  request.creases = true;
+  return request;
 }
 
 namespace {
@@ -166,6 +90,10 @@ std::vector<Vec3f> to_float(const std::vector<Vec3>& values) {
 void add(KeyHasher& key, const Camera& c) {
   key.add(c.position).add(c.target).add(c.up).add(c.focal_length_mm).add(c.sensor_width_mm).add(c.f_number);
   if (c.f_number > 0) key.add(c.focus_distance);
+}
+
+void add(KeyHasher& key, const PixelWindow& window) {
+  key.add(window.left).add(window.top).add(window.right).add(window.bottom);
 }
 
 }  // namespace
@@ -210,6 +138,14 @@ void SceneStage::load_images() {
     });
 }
 
+double SceneStage::count_texels() const {
+  const Shot& shot = run_.shot();
+  const double textures = shows_heat() ? 0 : textures_.count_texels();
+  if (!shows_picture(shot)) return textures;
+  const auto [width, height] = at_environment(shot, [&] { return picture_size(shot.environment_image); });
+  return textures + static_cast<double>(width) * height;
+}
+
 /// Once, before the first scene: what all of them share, and what is to be said of them.
 void SceneStage::start_scenes() {
   warn_far_from_origin();
@@ -242,6 +178,8 @@ Scene SceneStage::at(int frame, const std::vector<SkinnedBody>& bodies) {
     MotionMesh mesh;
     mesh.name = shot.bodies[b].name;
     mesh.triangles = run_.loaded(b).surface.triangles;
+    CHECK(run_.filled(b) != nullptr);  // it was skinned
+    mesh.normal_triangles = run_.filled(b)->creases.triangles;
     mesh.rest_positions = rest_positions_[b];
     mesh.appearance = look.appearances[b];
     mesh.material = shot.bodies[b].material;
@@ -294,7 +232,13 @@ HeatRange SceneStage::heat_range() const {
 }
 
 void SceneStage::draw_legend(DisplayImage& image) const {
-  if (shows_heat()) draw_heat_legend(heat_legend(run_.shot().render.heat.quantity, heat_range()), image);
+  if (!shows_heat()) return;
+  const HeatRange range = heat_range();
+  const HeatLegend legend = heat_legend(run_.shot().render.heat.quantity, range);
+  draw_heat_legend(legend, image);
+  if (has_legend_letters(image.width, image.height)) return;
+  std::call_once(small_legend_,
+                 [&] { run_.context().log.warn(small_legend_warning(range, image.width, image.height)); });
 }
 
 /// All but the surfaces.
@@ -335,15 +279,14 @@ void SceneStage::add_tracing(KeyHasher& key, const std::vector<Camera>& camera_m
     if (params.channels.has(PictureChannel::MaterialId)) key.add(body.material);
   }
   key.add(params.noise).add(params.noise > 0 ? params.min_samples : 0).add(params.time_limit);
-  const PixelWindow& window = params.window;
-  key.add(window.left).add(window.top).add(window.right).add(window.bottom);
+  add(key, params.window);
   for (const Camera& camera : camera_motion) add(key, camera);
   const RenderSettings& render = run_.shot().render;
   if (render.shutter > 0) key.add(render.curve.opening).add(render.curve.closing);
 }
 
 StageKey SceneStage::trace_key(int frame) const {
-  KeyHasher key("trace 9");
+  KeyHasher key("trace 10");
   const Look look = this->look(frame);
   add_look(key, look);
   add_tracing(key, look.camera_motion);
@@ -353,14 +296,15 @@ StageKey SceneStage::trace_key(int frame) const {
 }
 
 StageKey SceneStage::preview_key(int frame) const {
-  KeyHasher key("preview 6");
+  KeyHasher key("preview 7");
   add_look(key, look(frame));
+  add(key, run_.shot().render.params.window);
   if (!coloring_key_.empty()) key.add(coloring_key_);
   return key.add(run_.surfaces_key(frame, still_request(run_.shot().render))).key();
 }
 
 StageKey SceneStage::content_key(int frame, const Scene& scene) const {
-  KeyHasher key("picture 5");
+  KeyHasher key("picture 6");
   Look look = this->look(frame);
   look.camera = scene.camera;  // a turntable's is its own
   add_look(key, look);
@@ -376,6 +320,7 @@ StageKey SceneStage::content_key(int frame, const Scene& scene) const {
   for (std::size_t b = 0; b < run_.body_count(); ++b) key.add(run_.loaded(b).key);
   for (const MotionMesh& mesh : scene.meshes) {
     key.add(mesh.triangles);
+    if (!mesh.normal_triangles.empty()) key.add("creases 1").add(mesh.normal_triangles);
     for (const MotionMesh::Time& time : mesh.times) key.add(time.positions).add(time.normals);
     key.add(mesh.next_positions);
     for (const float value : mesh.strain) key.add(double{value});

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "render/scene/scene.h"
+#include "tool/cache/key.h"
 #include "tool/shot/keyed_look.h"
 #include "tool/shot/shot.h"
 #include "tool/stages/heat_map.h"
-#include "tool/stages/key.h"
 #include "tool/stages/material_textures.h"
+#include "tool/stages/shot_camera.h"
 #include "tool/stages/shot_run.h"
 
 namespace softreel {
@@ -39,10 +40,13 @@ class SceneStage {
   /// The range of the shot's heat: the given one, or what find_heat_range finds, which the first call may have to
   /// simulate the whole shot for. Any thread may ask once a scene was made; before, only the one that makes them.
   HeatRange heat_range() const;
-  /// Draws the legend of the shot's heat on a picture, if the shot shows any.
+  /// Draws the legend of the shot's heat on a picture, if the shot shows any. Warns once if it has no room for letters.
+  /// Any thread.
   void draw_legend(DisplayImage& image) const;
   /// Of the picture of a frame.
   Camera camera(double frame) const;
+  /// Of the pictures that scenes load, textures and surroundings, by their headers. Throws input_error.
+  double count_texels() const;
 
  private:
   bool shows_heat() const { return run_.shot().render.heat.quantity != HeatQuantity::None; }
@@ -69,6 +73,7 @@ class SceneStage {
   MaterialTextures textures_;
   mutable std::mutex range_mutex_;
   mutable std::optional<HeatRange> found_range_;
+  mutable std::once_flag small_legend_;  ///< whether it was warned of
   std::shared_ptr<const EnvironmentImage> environment_image_;
   std::optional<Daylight> drawn_day_;  ///< the sky of environment_image_, where the shot has one
   StageKey environment_checksum_;      ///< of the image file; empty without one
@@ -76,21 +81,6 @@ class SceneStage {
   std::vector<std::shared_ptr<const std::vector<Vec3f>>> rest_positions_;  ///< per body
   StageKey coloring_key_;                                                  ///< empty where every body has one look
 };
-
-/// The camera of a shot at a frame. rest_bounds: of all bodies at rest, for CameraMode::Frame.
-Camera camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
-
-/// The last frame in (after, until] at which the camera jumps, as keys of ease "constant" do; none: it moves or stands.
-std::optional<double> last_cut(const CameraSettings& settings, double after, double until);
-
-/// The cameras at the times of the shutter that ends at a frame, as Scene::camera_motion: empty if all are alike. Times
-/// before a cut count as the cut's.
-std::vector<Camera> camera_motion_at(const CameraSettings& settings, const RenderSettings& render, double frame,
-                                     const Bounds& rest_bounds, double aspect);
-
-/// The camera of the frame after this one, for motion vectors. It stays where a cut lies between them: what the next
-/// shot shows has not moved there.
-Camera next_camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
 
 /// What a request for skinned surfaces must hold for the shot's motion blur.
 SkinRequest skin_request(const RenderSettings& settings);

@@ -1,14 +1,17 @@
 #include "tool/stages/settings_snapshot.h"
 
+#include <charconv>
 #include <filesystem>
 #include <functional>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/mesh/readers/mesh_source.h"
+#include "tool/bodies/weight_maps.h"
+#include "tool/cache/atomic_file.h"
 #include "tool/shot/shot_load.h"
-#include "tool/stages/atomic_file.h"
-#include "tool/stages/weight_maps.h"
 
 namespace softreel {
 namespace {
@@ -29,6 +32,46 @@ std::string checksum_of(const std::string& path) {
   } catch (const Error&) {
     return "unreadable";
   }
+}
+
+/// "%20" in the address of a file is a blank.
+std::string decoded(const std::string& address) {
+  std::string text;
+  for (std::size_t i = 0; i < address.size(); ++i) {
+    unsigned char byte = 0;
+    const char* const digits = address.data() + i + 1;
+    const bool is_code =
+        address[i] == '%' && i + 2 < address.size() && std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+    text += is_code ? static_cast<char>(byte) : address[i];
+    if (is_code) i += 2;
+  }
+  return text;
+}
+
+/// The files with the numbers of a glTF scene, as it names them; none of one that cannot be read.
+std::vector<std::string> buffer_files(const std::string& path) {
+  std::vector<std::string> files;
+  try {
+    const nlohmann::json scene = nlohmann::json::parse(read_file(path));
+    for (const nlohmann::json& buffer : scene.at("buffers"))
+      if (const std::string address = buffer.value("uri", ""); !address.empty() && !address.starts_with("data:"))
+        files.push_back((std::filesystem::path(path).parent_path() / decoded(address)).string());
+  } catch (const std::exception&) {
+    files.clear();
+  }
+  return files;
+}
+
+/// Of a file that constraints read, and of those that a glTF scene keeps its motion in.
+std::string constraint_checksum(const std::string& path) {
+  const std::string own = checksum_of(path);
+  const std::vector<std::string> buffers =
+      detail::lower_extension(path) == ".gltf" ? buffer_files(path) : std::vector<std::string>();
+  if (buffers.empty()) return own;
+  KeyHasher key("scene and buffers");
+  key.add(own);
+  for (const std::string& file : buffers) key.add(checksum_of(file));
+  return key.key();
 }
 
 /// Steps from the root of a document to a place in it.
@@ -126,7 +169,7 @@ SettingsSnapshot snapshot(const ShotRun& run) {
     snapshot[std::string(kMeshPrefix) + body.mesh] = mesh_entry(run.loaded(b));
     for (std::string* path : constraint_files(body, with_paths.glues)) {
       *path = absolute(*path);
-      snapshot[std::string(kMeshPrefix) + *path] = checksum_of(*path);
+      snapshot[std::string(kMeshPrefix) + *path] = constraint_checksum(*path);
     }
     if (body.tetrahedra.empty()) continue;
     body.tetrahedra = absolute(body.tetrahedra);

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "tool/outputs/outputs.h"
 #include "tool/shot/shot.h"
 #include "tool/shot/toml_tree.h"
-#include "tool/stages/outputs.h"
 #include "tool/stages/shot_run.h"
 
 namespace softreel {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "tool/bodies/run_context.h"
+#include "tool/outputs/outputs.h"
 #include "tool/shot/shot.h"
-#include "tool/stages/outputs.h"
-#include "tool/stages/run_context.h"
 
 namespace softreel {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "tool/cache/stage_names.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/sheet_stage.h"
-#include "tool/stages/stage_names.h"
 
 namespace softreel {
 namespace {

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "core/skinning/skinning.h"
+#include "tool/bodies/held_ranges.h"
+#include "tool/bodies/simulate_key.h"
+#include "tool/cache/stage_names.h"
 #include "tool/stages/heat_map.h"
-#include "tool/stages/simulate_key.h"
-#include "tool/stages/stage_names.h"
 
 namespace softreel {
 
@@ -37,7 +40,26 @@ ShotRun::ShotRun(const Shot& shot, const RunContext& context, DialUse dial) : sh
   join_glued();
 }
 
+namespace {
+
+/// How the pins and pulls of a body are said to hold, and do not.
+void warn_of_missed_ranges(const Shot& shot, const BodyConstraints& constraints, const Log& log) {
+  const auto warn = [&](const auto& constraint) {
+    for (const std::string& line : find_missed_ranges(shot, constraint.name, constraint.active, constraint.grab))
+      log.warn(line);
+  };
+  std::for_each(constraints.pins.begin(), constraints.pins.end(), warn);
+  std::for_each(constraints.pulls.begin(), constraints.pulls.end(), warn);
+}
+
+}  // namespace
+
 void ShotRun::join_glued() {
+  for (std::size_t g = 0; g < shot_.glues.size(); ++g) {
+    const GlueSettings& glue = shot_.glues[g];
+    const std::string name = fmt::format("glue[{}] ({})", g, to_string(glue.origin));
+    for (const std::string& line : find_missed_ranges(shot_, name, glue.active, false)) context_.log.warn(line);
+  }
   for (const std::vector<std::size_t>& group : glue_groups(shot_)) {
     std::vector<GlueMember> members;
     for (const std::size_t b : group)
@@ -56,6 +78,7 @@ void ShotRun::resolve(std::size_t index, BodyConstraints constraints, DialUse us
                                      : stored_dial(shot_, body.dial_key, context_);
   }
   body.resolved = filled_in(shot_, index, body.dial);
+  warn_of_missed_ranges(body.resolved, constraints, context_.log);
   body.simulation = std::make_unique<BodySimulation>(body.resolved, body.resolved.bodies[index], body.loaded,
                                                      std::move(constraints), context_);
 }
@@ -93,8 +116,10 @@ StageKey ShotRun::surfaces_key(int frame, const SkinRequest& request) const {
   key.add(request.normals).add(request.shutter).add(blurred ? request.segments : 0);
   if (request.heat != HeatQuantity::None) key.add("heat 1").add(request.heat);
   if (request.strain) key.add("strain 1");
-  for (const auto& body : bodies_) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto& body = bodies_[b];
     key.add(body->loaded.key).add(body->simulation->filled_key()).add(body->simulation->frame_key(frame));
+    if (request.creases && settings(b).has_creases()) key.add("creases 1").add(settings(b).crease_deg);
     const bool at_end = frame == shot_.settings.last_frame;
     if ((blurred || (request.next && at_end)) && frame > first_simulated_frame(shot_))
       key.add(body->simulation->frame_key(frame - 1));
@@ -200,8 +225,11 @@ void ShotRun::skin_times(Body& body, int frame, const SkinRequest& request, cons
       std::vector<Vec3> nodes = positions_between(steps, time);
       at.positions =
           skin_positions(body.loaded.surface.positions, filled.embedding, filled.mesh, nodes, context_.threads);
-      if (request.normals)
-        at.normals = skin_normals(filled.normals, filled.embedding, filled.mesh, nodes, context_.threads);
+      if (request.normals) {
+        const bool hard = request.creases && !filled.creases.empty();
+        at.normals = skin_normals(hard ? filled.creases.normals : filled.normals, filled.embedding, filled.mesh, nodes,
+                                  context_.threads, hard ? filled.creases.vertex_of : std::span<const Index>{});
+      }
       if (request.nodes) at.nodes = std::move(nodes);
     }
     take(std::move(at));

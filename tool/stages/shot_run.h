@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "tool/bodies/body_stage.h"
+#include "tool/bodies/dial_stage.h"
+#include "tool/bodies/glue_stage.h"
+#include "tool/bodies/run_context.h"
+#include "tool/bodies/simulate_stage.h"
+#include "tool/cache/cache_use.h"
 #include "tool/shot/shot.h"
-#include "tool/stages/body_stage.h"
-#include "tool/stages/cache_use.h"
-#include "tool/stages/dial_stage.h"
-#include "tool/stages/glue_stage.h"
-#include "tool/stages/run_context.h"
-#include "tool/stages/simulate_stage.h"
 
 namespace softreel {
 
@@ -23,7 +23,7 @@ struct HeatSource;
 struct SkinnedBody {
   struct Time {
     std::vector<Vec3> positions;  ///< as surface.positions, m
-    std::vector<Vec3> normals;    ///< empty if not asked for
+    std::vector<Vec3> normals;    ///< per vertex, or as FilledBody::creases has them; empty if not asked for
     std::vector<Vec3> nodes;      ///< of the tetrahedra, m; empty if not asked for
   };
   std::vector<Time> times;           ///< times.back() is the frame itself
@@ -43,7 +43,8 @@ struct SkinRequest {
   bool next = false;
   HeatQuantity heat = HeatQuantity::None;
   bool strain = false;
-  bool nodes = false;  ///< of the tetrahedra
+  bool nodes = false;    ///< of the tetrahedra
+  bool creases = false;  ///< normals with the hard edges of bodies that have them; else all are smooth
 };
 
 /// Takes a body's surface at one time of the shutter.

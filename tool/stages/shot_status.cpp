@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "tool/bodies/simulate_key.h"
+#include "tool/cache/stage_names.h"
 #include "tool/shot/shot_load.h"
 #include "tool/stages/movie_stage.h"
 #include "tool/stages/picture_stage.h"
@@ -15,8 +17,6 @@
 #include "tool/stages/settings_snapshot.h"
 #include "tool/stages/sheet_stage.h"
 #include "tool/stages/shot_run.h"
-#include "tool/stages/simulate_key.h"
-#include "tool/stages/stage_names.h"
 
 namespace softreel {
 namespace {

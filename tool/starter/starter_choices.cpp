@@ -5,11 +5,13 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/base/error.h"
+#include "core/mesh/edge_angles.h"
 #include "core/mesh/mesh_check.h"
 #include "core/tetmesh/tet_quality.h"
 #include "tool/starter/starter_selections.h"
@@ -17,10 +19,11 @@
 namespace softreel {
 namespace {
 
-constexpr double kLength = 1.0;      ///< m, of the longest edge of the box: lamps and ground are made for it
-constexpr double kStandsFrom = 0.4;  ///< height over width from which a body is taken to stand
-constexpr double kFlatUnder = 0.02;  ///< height over width under which there is no height to fit
-constexpr double kHover = 0.3;       ///< m above the ground, of bodies that are held at one end
+constexpr double kLength = 1.0;        ///< m, of the longest edge of the box: lamps and ground are made for it
+constexpr double kStandsFrom = 0.4;    ///< height over width from which a body is taken to stand
+constexpr double kFlatUnder = 0.02;    ///< height over width under which there is no height to fit
+constexpr double kCreaseDegrees = 40;  ///< between triangles, from which an edge is hard
+constexpr double kHover = 0.3;         ///< m above the ground, of bodies that are held at one end
 constexpr std::int64_t kTets = 20000, kMoreTets = 80000;
 /// Of sheets, in shares of the box's diagonal. Thinner than this hardly shows; where sheets lie closer than that, less.
 constexpr double kSheet = 0.02, kThinSheet = 0.005;
@@ -181,6 +184,17 @@ void count_loose_pieces(const FilledBody& filled, StarterBody& body) {
   }));
 }
 
+/// Whether a surface is made of flat or smooth parts with hard edges between them. Scans have edges of every angle, and
+/// what is to look round but has few triangles has more that are nearly sharp.
+bool has_hard_edges(const SurfaceMesh& surface) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  constexpr double kBentDegrees = 25;   // of mantles of 15 sides and more edges are less
+  constexpr double kLeastShare = 0.05;  // of all edges, by length
+  constexpr double kMostBent = 0.25;    // over the sharp ones
+  const EdgeLengths lengths = measure_edges(surface, kBentDegrees * kRadians, kCreaseDegrees * kRadians);
+  return lengths.sharp >= kLeastShare * lengths.all && lengths.sharp > 0 && lengths.bent <= kMostBent * lengths.sharp;
+}
+
 }  // namespace
 
 StarterBody choose_body(const std::string& mesh, const std::string& name, const StarterWishes& wishes,
@@ -198,6 +212,7 @@ StarterBody choose_body(const std::string& mesh, const std::string& name, const 
   body.tets = filled.mesh.tets.size();
   body.volume = measure_quality(filled.mesh, context.threads).volume;
   count_loose_pieces(filled, body);
+  if (has_hard_edges(body.loaded.surface)) body.settings.crease_deg = kCreaseDegrees;
   return body;
 }
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "tool/bodies/body_stage.h"
+#include "tool/bodies/run_context.h"
 #include "tool/shot/shot.h"
-#include "tool/stages/body_stage.h"
-#include "tool/stages/run_context.h"
 
 namespace softreel {
 

@@ -7,13 +7,14 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "tool/bodies/constraint_stage.h"
+#include "tool/bodies/weight_maps.h"
 #include "tool/farm/shell_text.h"
+#include "tool/shot/plain_path.h"
 #include "tool/shot/preset_library.h"
 #include "tool/shot/schema.h"
 #include "tool/shot/shot_layers.h"
 #include "tool/shot/shot_select.h"
-#include "tool/stages/constraint_stage.h"
-#include "tool/stages/weight_maps.h"
 #include "tool/starter/commented_document.h"
 #include "tool/starter/starter_stage.h"
 
@@ -41,15 +42,18 @@ std::string body_name(const std::string& mesh) {
   return find_field("body.*." + name) == nullptr ? name : name + "_body";
 }
 
-/// `path` as a file in `folder` says it: from there, or from the root where the two have nothing but that in common.
+/// `path` as a file in `folder` says it: from there, or from the root where the two have nothing but that in common, or
+/// where the way from there goes through a link.
 std::string path_from(const std::string& path, const fs::path& folder) {
-  const fs::path file = fs::absolute(path).lexically_normal();
-  const fs::path from = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
+  const fs::path file = plain_path(fs::absolute(path));
+  const fs::path from = plain_path(fs::absolute(folder.empty() ? "." : folder));
   const auto first_folder = [](const fs::path& one) {
     auto part = one.begin();
     return ++part == one.end() ? fs::path() : *part;
   };
-  return first_folder(file) == first_folder(from) ? file.lexically_relative(from).generic_string() : file.string();
+  const fs::path relative = file.lexically_relative(from);
+  const bool leads_there = first_folder(file) == first_folder(from) && plain_path(from / relative) == file;
+  return leads_there ? relative.generic_string() : file.string();
 }
 
 /// Paths in a document that other files say, as the new shot must say them.
@@ -64,7 +68,7 @@ void rebase_paths(TomlValue& value, const std::string& at, const fs::path& folde
   if (field == nullptr || (field->type != "path" && field->type != "path or table") || value.origin.file == kNew ||
       fs::path(*text).is_absolute())
     return;
-  value.data = path_from((fs::path(value.origin.file).parent_path() / *text).lexically_normal().string(), folder);
+  value.data = path_from((fs::path(value.origin.file).parent_path() / *text).string(), folder);
 }
 
 std::string two_digits(double value) {
@@ -166,6 +170,7 @@ class StarterText {
       text += fmt::format("translate = [{}, {}, {}]\n", settings.translate.x(), settings.translate.y(),
                           settings.translate.z());
     text += fmt::format("material = {}\n", quoted(material_));
+    if (settings.has_creases()) text += fmt::format("crease_deg = {}\n", settings.crease_deg);
     if (!body_.loaded.given) text += fmt::format("tets = {}\n", settings.tets);
     if (settings.mode == TetMode::Embedded) text += "mode = \"embedded\"\n";
     if (settings.thickness > 0) text += fmt::format("thickness = {}\n", settings.thickness);
@@ -270,6 +275,8 @@ class StarterText {
     remarks_[at("up")] = body_.up_reason;
     remarks_[at(body_.settings.fit > 0 ? "fit" : "scale")] = body_.size_reason;
     remarks_[at("material")] = "The library in presets/materials has others: softreel new --material NAME.";
+    if (body_.settings.has_creases())
+      remarks_[at("crease_deg")] = "Chosen because the mesh has edges sharper than this between flat or smooth parts.";
     if (!body_.fill_reason.empty())
       remarks_[at(body_.settings.thickness > 0               ? "thickness"
                   : body_.settings.mode == TetMode::Embedded ? "mode"

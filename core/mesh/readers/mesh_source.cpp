@@ -1,7 +1,5 @@
 #include "core/mesh/readers/mesh_source.h"
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 
@@ -66,11 +64,26 @@ std::string read_mesh_file(const std::string& path) {
   return bytes;
 }
 
+std::string_view without_mark(std::string_view bytes) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  return bytes.substr(bytes.starts_with(kMark) ? kMark.size() : 0);
+}
+
+std::string_view text_of(const MeshSource& source) {
+  if (source.bytes.starts_with("\xff\xfe") || source.bytes.starts_with("\xfe\xff"))
+    throw broken_file(source, "", "its text is UTF-16", "ASCII or UTF-8", "Save the file in UTF-8");
+  return without_mark(source.bytes);
+}
+
+std::string small_letters(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 std::string lower_extension(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+  return small_letters(fs::path(path).extension().string());
 }
 
 bool has_linear_colors(const std::string& path) {

@@ -29,6 +29,16 @@ void require_mesh_file(const std::string& path);
 /// The bytes of a mesh file. Throws input_error as require_mesh_file, and for a file that cannot be read.
 std::string read_mesh_file(const std::string& path);
 
+/// Without the byte order mark that some editors put before UTF-8.
+std::string_view without_mark(std::string_view bytes);
+
+/// The text of a file whose format is text: its bytes without that mark.
+/// Throws input_error for UTF-16.
+std::string_view text_of(const MeshSource& source);
+
+/// Text with small letters for capital ones, those of ASCII only.
+std::string small_letters(std::string_view text);
+
 /// ".obj", in small letters; "" if the path has none.
 std::string lower_extension(const std::string& path);
 

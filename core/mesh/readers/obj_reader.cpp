@@ -39,7 +39,7 @@ void collect_groups(SurfaceMesh& mesh, const std::vector<GroupRange>& ranges) {
 
 class ObjReader {
  public:
-  ObjReader(const MeshSource& source, const Log& log) : source_(source), log_(log), lines_(source.bytes) {}
+  ObjReader(const MeshSource& source, const Log& log) : source_(source), log_(log), lines_(text_of(source)) {}
 
   SurfaceMesh read() {
     std::string_view line;

@@ -11,7 +11,7 @@ namespace {
 
 class OffReader {
  public:
-  OffReader(const MeshSource& source, const Log& log) : source_(source), log_(log), lines_(source.bytes) {}
+  OffReader(const MeshSource& source, const Log& log) : source_(source), log_(log), lines_(text_of(source)) {}
 
   SurfaceMesh read() {
     std::string_view line = next_line("header");

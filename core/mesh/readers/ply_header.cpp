@@ -33,7 +33,7 @@ constexpr std::array<TypeName, 16> kTypeNames{{{"char", PlyType::Int8},
 
 class HeaderReader {
  public:
-  explicit HeaderReader(const MeshSource& source) : source_(source), lines_(source.bytes) {}
+  explicit HeaderReader(const MeshSource& source) : source_(source), lines_(text_of(source)) {}
 
   PlyHeader read() {
     std::string_view line;

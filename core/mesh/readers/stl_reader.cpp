@@ -44,9 +44,15 @@ SurfaceMesh read_binary(std::string_view bytes) {
   return mesh;
 }
 
+/// Text begins with "solid"; so do some binary files, but their number of facets has a zero byte.
+bool is_text_stl(const MeshSource& source) {
+  std::string_view text = without_mark(source.bytes);
+  return text.substr(0, kHeaderBytes).find('\0') == text.npos && small_letters(take_word(text)) == "solid";
+}
+
 class StlTextReader {
  public:
-  explicit StlTextReader(const MeshSource& source) : source_(source), lines_(source.bytes) {}
+  explicit StlTextReader(const MeshSource& source) : source_(source), lines_(text_of(source)) {}
 
   SurfaceMesh read() {
     std::string_view line;
@@ -59,7 +65,7 @@ class StlTextReader {
  private:
   void read_line(std::string_view line) {
     std::string_view rest = line;
-    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+    for (std::string word = next_keyword(rest); !word.empty(); word = next_keyword(rest)) {
       if (word == "vertex") {
         read_vertex(rest);
       } else if (word == "facet") {
@@ -84,6 +90,9 @@ class StlTextReader {
       }
     }
   }
+
+  /// Some programs write STL in capital letters.
+  static std::string next_keyword(std::string_view& rest) { return small_letters(take_word(rest)); }
 
   static void skip_words(std::string_view& rest, int count) {
     for (int k = 0; k < count; ++k) take_word(rest);
@@ -132,12 +141,12 @@ SurfaceMesh read_stl(const MeshSource& source, const Log& log) {
   const std::string_view bytes = source.bytes;
   const std::uint64_t announced = bytes.size() < kHeaderBytes ? 0 : announced_bytes(bytes);
   if (announced > 0 && announced == bytes.size()) return read_binary(bytes);
-  std::string_view text = bytes;
-  if (take_word(text) == "solid") return StlTextReader(source).read();
+  if (is_text_stl(source)) return StlTextReader(source).read();
   if (announced > kHeaderBytes && announced < bytes.size()) {
     log.warn(fmt::format("{}: {} bytes after the last triangle left out", source.name, bytes.size() - announced));
     return read_binary(bytes.substr(0, announced));
   }
+  text_of(source);  // refuses UTF-16 by its name
   throw broken_file(source, "", fmt::format("{} bytes are no STL file", bytes.size()),
                     fmt::format("text that starts with 'solid', or a binary file of {} bytes by its header",
                                 announced == 0 ? "at least 84" : std::to_string(announced)),

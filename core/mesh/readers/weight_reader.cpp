@@ -19,7 +19,7 @@ void require_weight(const MeshSource& source, const std::string& place, double w
 
 std::vector<double> read_text(const MeshSource& source) {
   std::vector<double> weights;
-  LineScanner lines(source.bytes);
+  LineScanner lines(text_of(source));
   for (std::string_view line; lines.next(line);) {
     const std::string_view word = trimmed(line);
     if (word.empty() || word.front() == '#') continue;

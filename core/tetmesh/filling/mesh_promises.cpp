@@ -1,32 +1,33 @@
 #include "core/tetmesh/filling/mesh_promises.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/base/check.h"
 #include "core/base/error.h"
-#include "core/mesh/disjoint_sets.h"
-#include "core/mesh/mesh_topology.h"
 #include "core/tetmesh/boundary_check.h"
 #include "core/tetmesh/tet_quality.h"
 
 namespace softreel {
+
+Index count_pieces(const TetMesh& mesh) {
+  const std::vector<Index> piece_of = face_connected_pieces(mesh);
+  return piece_of.empty() ? 0 : *std::max_element(piece_of.begin(), piece_of.end()) + 1;
+}
+
 namespace {
 
-/// Shells of a surface: triangles that are connected across edges which have two of them. Cubes that share no more than
-/// a corner or an edge are two.
-Index count_shells(const SurfaceMesh& surface) {
-  const std::vector<Triangle> welded = welded_triangles(surface);
-  const std::vector<HalfEdge> sides = sorted_half_edges(welded);
-  DisjointSets sets(welded.size());
-  for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
-    if (edge.size() == 2) sets.join(edge[0].triangle, edge[1].triangle);
-  });
-  Index shells = 0;
-  for (std::size_t t = 0; t < welded.size(); ++t)
-    shells += !is_collapsed(welded[t]) && sets.root(static_cast<Index>(t)) == static_cast<Index>(t) ? 1 : 0;
-  return shells;
+/// Volume of the tetrahedra in units of the surface's, where that is known: of one closed part. Else 1.
+double share_of_volume(const TetMesh& mesh, const Solid& solid) {
+  if (solid.parts.parts.size() != 1 || solid.has_open_parts()) return 1;
+  double volume = 0;
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    const auto node = [&](std::size_t k) -> const Vec3& { return mesh.nodes[at(mesh.tets[e][k])]; };
+    volume += mesh.fill_of(e) * tet_volume(node(0), node(1), node(2), node(3));
+  }
+  return volume / std::abs(solid.parts.parts.front().volume);
 }
 
 }  // namespace
@@ -58,16 +59,45 @@ void require_manifold(const TetMesh& mesh, const std::string& name) {
       name, defects.edges, defects.vertices, defects.first[0], defects.first[1], defects.first[2]));
 }
 
+bool is_whole(const TetMesh& mesh, const SurfaceMesh& surface) {
+  const Index pieces = count_pieces(mesh);
+  return pieces <= 1 || pieces <= count_solids(surface);
+}
+
 void require_whole(const TetMesh& mesh, const SurfaceMesh& solid, double edge, const std::string& part,
                    const std::string& name) {
-  const std::vector<Index> piece_of = face_connected_pieces(mesh);
-  const Index pieces = piece_of.empty() ? 0 : *std::max_element(piece_of.begin(), piece_of.end()) + 1;
-  if (pieces <= 1 || pieces <= count_shells(solid)) return;
+  if (is_whole(mesh, solid)) return;
   throw input_error(fmt::format(
       "body '{}': {} is too thin for the lattice: with an edge of {:.4g} m it falls into {} pieces. "
       "Accepted: an edge of about {:.2g} m or less. Set a smaller edge or more tets, or mode = \"embedded\", "
       "which holds together whatever the edge.",
-      name, part, edge, pieces, 0.5 * edge));
+      name, part, edge, count_pieces(mesh), 0.5 * edge));
+}
+
+void warn_of_thickening(const TetMesh& mesh, const Solid& solid, const std::string& name, const Log& log) {
+  constexpr double kMostMore = 0.05;
+  const double share = share_of_volume(mesh, solid);
+  if (share > 1 + kMostMore)
+    log.warn(
+        fmt::format("body '{}': the tetrahedra have {:.0f} % more volume than {} encloses: what is thinner than "
+                    "they are was thickened. A smaller edge or more tets follow it better.",
+                    name, 100 * (share - 1), solid.parts.parts.front().place()));
+}
+
+void require_most_of(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads,
+                     const Log& log) {
+  constexpr double kLeast = 0.8, kMost = 0.9, kFarShare = 0.1;
+  const double share = share_of_volume(mesh, solid);
+  const SurfacePart& part = solid.parts.parts.front();
+  // Coarse ones cut off what is convex; a surface that overlaps itself counts its volume twice.
+  if (share >= kMost || measure_deviation(solid.surface, mesh, threads).from_surface <= kFarShare * part.box.diagonal())
+    return;
+  const std::string line = fmt::format(
+      "body '{}': {} is too thin for the tetrahedra: they fill {:.0f} % of its volume. Accepted: {} % or "
+      "more. Set a smaller edge or more tets, or mode = \"embedded\", which covers it whatever the edge.",
+      name, part.place(), 100 * share, 100 * kLeast);
+  if (share < kLeast) throw input_error(line);
+  log.warn(line);
 }
 
 }  // namespace softreel

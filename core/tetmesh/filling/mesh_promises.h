@@ -3,8 +3,10 @@
 
 #include <string>
 
+#include "core/base/log.h"
 #include "core/base/parallel.h"
 #include "core/mesh/surface_mesh.h"
+#include "core/tetmesh/filling/solids.h"
 #include "core/tetmesh/tet_mesh.h"
 
 namespace softreel {
@@ -20,9 +22,22 @@ void require_quality(const TetMesh& mesh, const AngleBounds& bounds, const std::
 /// Throws work_error if the boundary is no manifold.
 void require_manifold(const TetMesh& mesh, const std::string& name);
 
-/// Throws input_error, with the edge length that should do, if the tetrahedra of one solid are more pieces than its
-/// surface has shells: it is too thin somewhere. edge: of the tetrahedra there, m.
+/// Pieces that are connected through faces.
+Index count_pieces(const TetMesh& mesh);
+
+/// Whether the tetrahedra made of one surface are no more pieces than it has solids (solids.h).
+bool is_whole(const TetMesh& mesh, const SurfaceMesh& surface);
+
+/// Throws input_error, with the edge length that should do, if they are not: it is too thin somewhere. edge: of the
+/// tetrahedra there, m.
 void require_whole(const TetMesh& mesh, const SurfaceMesh& solid, double edge, const std::string& part,
                    const std::string& name);
+
+/// Warns if the tetrahedra of a solid that is one closed part have more volume than it.
+void warn_of_thickening(const TetMesh& mesh, const Solid& solid, const std::string& name, const Log& log);
+
+/// Throws input_error if they leave out much of it, far from where they are; warns of less.
+void require_most_of(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads,
+                     const Log& log);
 
 }  // namespace softreel

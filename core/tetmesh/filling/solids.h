@@ -13,6 +13,10 @@ namespace softreel {
 struct Solid {
   SurfaceMesh surface;  ///< positions and triangles only
   SurfaceParts parts;
+
+  bool has_open_parts() const;
+  /// That with the least volume for its area, but for those without any.
+  const SurfacePart& thinnest_part() const;
 };
 
 /// Number of the solid of each part, from 0 in the order of their first part.
@@ -21,6 +25,14 @@ struct Solid {
 /// a shell hidden inside; a ball in a cavity does not. Open parts have an inside only together with what is around
 /// them: they are of one solid with every part whose box comes within 2 % of the larger diagonal.
 std::vector<Index> find_solids(const SurfaceMesh& surface, const SurfaceParts& parts);
+
+/// Per triangle the number of its solid, -1 for lines and points, of a surface whose parts may touch at vertices and
+/// edges: its tetrahedra may be a piece for each. Where shells are open each counts by itself, as no one knows what
+/// they enclose.
+std::vector<Index> find_triangle_solids(const SurfaceMesh& surface);
+
+/// The number of these solids.
+Index count_solids(const SurfaceMesh& surface);
 
 /// Takes the surface apart. solids: of find_solids.
 std::vector<Solid> split_solids(const SurfaceMesh& surface, const SurfaceParts& parts,

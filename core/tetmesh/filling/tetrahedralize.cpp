@@ -10,10 +10,11 @@
 #include "core/base/error.h"
 #include "core/tetmesh/boundary_fit.h"
 #include "core/tetmesh/boundary_mending.h"
-#include "core/tetmesh/error_budget.h"
+#include "core/tetmesh/filling/graded_solid.h"
 #include "core/tetmesh/filling/mesh_promises.h"
 #include "core/tetmesh/filling/solids.h"
 #include "core/tetmesh/filling/surface_preparation.h"
+#include "core/tetmesh/filling/waiting_log.h"
 #include "core/tetmesh/graded_stuffing.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
 #include "core/tetmesh/mesh_pieces.h"
@@ -97,18 +98,31 @@ StuffedMesh cover_surface(const Job& job, double edge, const Vec3& shift) {
   return {std::move(cover.mesh), {}, {}};
 }
 
-/// Stuffs one solid; no promises checked yet.
-StuffedMesh stuff_solid(const Job& job, const Solid& solid, const LatticeFrame& frame) {
-  SurfaceDistance distance = [&] {
-    const ScopedStage stage(job.times, "tetrahedralize/distance");
-    return measure_distance(solid.surface.positions, solid.surface.triangles, frame, job.threads);
-  }();
+/// Where solids touch, what is thin is thickened across.
+void warn_of_fused(const Job& job, const Solid& solid, const TetMesh& mesh) {
+  if (solid.has_open_parts()) return;
+  const Index wanted = count_solids(solid.surface), pieces = count_pieces(mesh);
+  if (pieces > 0 && pieces < wanted)
+    job.log.warn(
+        fmt::format("body '{}': {} solids that touch in {} became {}: what joins them was thickened to about the edge. "
+                    "Accepted: this mesh, as it is. Move them apart, or use mode = \"embedded\" or error.",
+                    job.name, wanted, solid.parts.parts.front().place(), pieces));
+}
+
+SurfaceDistance measure_solid(const Job& job, const Solid& solid, const LatticeFrame& frame) {
+  const ScopedStage stage(job.times, "tetrahedralize/distance");
+  return measure_distance(solid.surface.positions, solid.surface.triangles, frame, job.threads);
+}
+
+/// Stuffs one solid; no promises checked yet. bridged: of these parts thin ones are kept in one piece each.
+StuffedMesh stuff_parts(const Job& job, const Solid& solid, SurfaceDistance distance, const SurfaceParts& bridged) {
   const ScopedStage stage(job.times, "tetrahedralize/lattice");
-  if (const Index taken_in = bridge_thin_parts(distance, solid.surface, solid.parts); taken_in > 0)
+  const Index taken_in = bridge_thin_parts(distance, solid.surface, bridged);
+  if (taken_in > 0)
     job.log.info(
         fmt::format("body '{}': what is thinner than the lattice was thickened to about its edge ({:.4g} m) at {} "
                     "nodes, so that it holds together. A smaller edge or more tets follow the surface there.",
-                    job.name, frame.spacing, taken_in));
+                    job.name, distance.lattice.frame.spacing, taken_in));
   StuffedMesh stuffed = stuff_isosurface(distance.lattice, job.threads);
   const BoundaryMending mending = mend_boundary(stuffed);
   if (mending.copied_nodes > 0 || mending.removed_tets > 0)
@@ -116,9 +130,32 @@ StuffedMesh stuff_solid(const Job& job, const Solid& solid, const LatticeFrame& 
         fmt::format("body '{}': {} nodes where parts touched at a vertex or edge were parted, {} tetrahedra where "
                     "the body touched itself were removed",
                     job.name, mending.copied_nodes, mending.removed_tets));
-  drop_crumbs(stuffed, distance.nearest_triangles, solid.parts, job.name, job.log);
+  drop_crumbs(stuffed, distance.nearest_triangles, solid.parts, {}, job.name, job.log);
   require_all_parts(stuffed, distance.nearest_triangles, solid.parts, job.name, job.log);
+  if (taken_in > 0) warn_of_fused(job, solid, stuffed.mesh);
   order_nodes(stuffed);
+  return stuffed;
+}
+
+/// Stuffs one solid part by part, so that those that only come near each other stay apart; or, where that leaves a thin
+/// one hanging loose beside the one that it grows out of, all parts as one.
+StuffedMesh stuff_solid(const Job& job, const Solid& solid, const LatticeFrame& frame) {
+  if (solid.parts.parts.size() <= 1 || solid.has_open_parts())
+    return stuff_parts(job, solid, measure_solid(job, solid, frame), solid.parts);
+  const SurfaceDistance distance = measure_solid(job, solid, frame);
+  WaitingLog lines;
+  const Log log = lines.sink();
+  const Job waiting{job.prepared, job.solids, job.params, job.name, job.threads, log, job.times};
+  const auto stuff = [&](const SurfaceParts& bridged) {
+    return lines.fill_or_pass_on(job.log, [&] { return stuff_parts(waiting, solid, distance, bridged); });
+  };
+  StuffedMesh stuffed = stuff(solid.parts);
+  if (!is_whole(stuffed.mesh, solid.surface)) {
+    lines = {};
+    stuffed = {};
+    stuffed = stuff({{SurfacePart{}}, std::vector<Index>(solid.surface.triangles.size(), 0)});
+  }
+  lines.pass_on(job.log);
   return stuffed;
 }
 
@@ -150,20 +187,6 @@ double edge_for_tets(const Job& job, double tets) {
   return high;
 }
 
-/// Lines that wait until it is known whether their mesh is the one that is kept.
-struct WaitingLog {
-  std::vector<std::string> infos, warnings;
-
-  Log sink() {
-    return {[this](const std::string& line) { infos.push_back(line); },
-            [this](const std::string& line) { warnings.push_back(line); }};
-  }
-  void pass_on(const Log& log) const {
-    for (const std::string& line : infos) log.info(line);
-    for (const std::string& line : warnings) log.warn(line);
-  }
-};
-
 /// Shift of the lattice, in edges: points that fill the cube evenly (the plastic number's additive recurrence). A body
 /// that is symmetric about its centre changes its count in jumps while the lattice is centred on it.
 Vec3 lattice_shift(int step) {
@@ -181,7 +204,8 @@ void warn_of_count(const Job& job, double wanted, std::size_t count) {
                   job.name, count, wanted));
 }
 
-/// Predicts an edge, fills, and corrects it by the cube root of the count's error until that is within 5 %.
+/// Predicts an edge, fills, and corrects it by the cube root of the count's error until that is within 5 %. Small
+/// counts go in jumps from lattice to lattice, and take little time: of them more lattices are tried.
 Filling fill_with_count(const Job& job, double wanted) {
   double edge = edge_for_tets(job, wanted);
   Filling best;
@@ -189,9 +213,10 @@ Filling fill_with_count(const Job& job, double wanted) {
   double best_error = 1e300;
   std::exception_ptr refused;
   int refusals = 0;
-  constexpr int kSteps = 6, kMostRefusals = 2;
-  constexpr double kMostOff = 0.25;
-  for (int step = 0; step < kSteps; ++step) {
+  constexpr int kSteps = 6, kStepsOfSmall = 24, kMostRefusals = 2;
+  constexpr double kMostOff = 0.25, kSmall = 50000;
+  const int steps = wanted <= kSmall ? kStepsOfSmall : kSteps;
+  for (int step = 0; step < steps; ++step) {
     WaitingLog lines;
     const Log log = lines.sink();
     require_size(job, edge);
@@ -201,7 +226,7 @@ Filling fill_with_count(const Job& job, double wanted) {
                                lattice_shift(std::max(0, step - 1) + refusals));
     } catch (const Error&) {  // a part that one lattice misses another may meet
       if (!refused) refused = std::current_exception();
-      if (++refusals == kMostRefusals) break;
+      if (++refusals >= kMostRefusals && !(best_error < kMostOff)) break;
       continue;
     }
     const auto count = static_cast<double>(filling.tets());
@@ -220,32 +245,6 @@ Filling fill_with_count(const Job& job, double wanted) {
   return best;
 }
 
-/// Fills one solid with graded sizes; says where an error budget could not be kept.
-void grade_solid(const Job& job, const Solid& solid, const ErrorBudgetParams& params, Filling& all) {
-  GradedFilling filling = [&] {
-    const ScopedStage stage(job.times, "tetrahedralize/lattice");
-    return fill_graded(solid.surface, params, job.threads);
-  }();
-  StuffedMesh& stuffed = filling.stuffed;
-  const std::size_t filled = stuffed.mesh.tets.size();
-  drop_crumbs(stuffed, filling.nearest_triangles, solid.parts, job.name,
-              job.log);                                // smaller than a cell of the base edge
-  stuffed.mesh.lattice.spacing = filling.finest_edge;  // what is too thin is judged by that
-  require_all_parts(stuffed, filling.nearest_triangles, solid.parts, job.name, job.log);
-  stuffed.mesh.lattice = {};  // none of one size: the hierarchy finds coarse lattices of its own, and converges better
-  order_nodes(stuffed);
-  all.edge = std::max(all.edge, filling.finest_edge);
-  all.meshes.push_back(std::move(stuffed));
-  const TetMesh& mesh = all.meshes.back().mesh;
-  if (params.error == 0 || (filling.is_kept && mesh.tets.size() == filled)) return;
-  const ScopedStage stage(job.times, "tetrahedralize/check");
-  if (const double reached = measure_deviation(solid.surface, mesh, job.threads).two_way(); reached > params.error)
-    job.log.warn(
-        fmt::format("body '{}': the tetrahedra keep to {:.4g} m of the surface, not to error = {:.4g} m: even edges of "
-                    "{:.4g} m do not reach all of it. Accepted: this mesh, as it is. Close or thicken what is thin.",
-                    job.name, reached, params.error, filling.finest_edge));
-}
-
 /// Fills with graded sizes. A count is shared out by the solids' areas.
 Filling fill_with_grades(const Job& job) {
   const TetrahedralizeParams& params = job.params;
@@ -257,7 +256,10 @@ Filling fill_with_grades(const Job& job) {
   Filling filling;
   for (const Solid& solid : job.solids) {
     const double tets = static_cast<double>(params.tets) * solid.parts.area() / area;
-    grade_solid(job, solid, {.error = params.error, .tets = tets, .base_edge = params.edge}, filling);
+    GradedSolid graded = grade_solid(solid, {.error = params.error, .tets = tets, .base_edge = params.edge}, job.name,
+                                     job.threads, job.log, job.times);
+    filling.edge = std::max(filling.edge, graded.finest_edge);
+    filling.meshes.push_back(std::move(graded.stuffed));
   }
   if (params.tets > 0 && filling.tets() > 0) warn_of_count(job, static_cast<double>(params.tets), filling.tets());
   return filling;
@@ -313,7 +315,11 @@ void finish_solids(const Job& job, Filling& filling) {
       job.log.info(fmt::format("body '{}': {}", job.name, describe(done)));
     }
     const ScopedStage stage(job.times, "tetrahedralize/check");
-    require_whole(stuffed.mesh, solid.surface, filling.edge, solid.parts.parts.front().place(), job.name);
+    require_whole(stuffed.mesh, solid.surface, filling.edge, solid.thinnest_part().place(), job.name);
+    if (!job.is_graded())
+      warn_of_thickening(stuffed.mesh, solid, job.name, job.log);
+    else if (job.params.error == 0)  // an error says itself what it misses
+      require_most_of(stuffed.mesh, solid, job.name, job.threads, job.log);
   }
 }
 

@@ -72,6 +72,22 @@ bool orient(const MeshSource& source, const std::vector<Vec3>& nodes, std::size_
   return volume < 0;
 }
 
+/// Moves what is found right into the mesh; returns how many elements were turned round. What the file had is gone
+/// before the faces are looked at, which take more.
+std::size_t take_contents(const MeshSource& source, TetFileContents contents, TetMesh& mesh) {
+  check_nodes(source, contents);
+  check_fill(source, contents);
+  std::size_t inverted = 0;
+  mesh.tets.reserve(contents.tets.size());
+  for (std::size_t e = 0; e < contents.tets.size(); ++e) {
+    mesh.tets.push_back(checked_tet(source, contents, e));
+    inverted += orient(source, contents.nodes, e, mesh.tets.back()) ? 1 : 0;
+  }
+  mesh.nodes = std::move(contents.nodes);
+  mesh.fill = std::move(contents.fill);
+  return inverted;
+}
+
 /// Leaves out the nodes that no element uses; returns their number.
 std::size_t drop_unused_nodes(TetMesh& mesh) {
   std::vector<Index> number(mesh.nodes.size(), -1);
@@ -88,6 +104,44 @@ std::size_t drop_unused_nodes(TetMesh& mesh) {
   for (Tet& tet : mesh.tets)
     for (Index& node : tet) node = number[static_cast<std::size_t>(node)];
   return dropped;
+}
+
+/// Leaves each element out that has the nodes of one before it. numbers: those of the elements in the file.
+void drop_repeated_tets(TetMesh& mesh, std::vector<std::size_t>& numbers) {
+  std::vector<std::pair<Tet, std::size_t>> sorted;
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    sorted.emplace_back(mesh.tets[e], e);
+    std::sort(sorted.back().first.begin(), sorted.back().first.end());
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<bool> repeated(mesh.tets.size(), false);
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i].first == sorted[i - 1].first) repeated[sorted[i].second] = true;
+  std::size_t kept = 0;
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    if (repeated[e]) continue;
+    mesh.tets[kept] = mesh.tets[e];
+    if (!mesh.fill.empty()) mesh.fill[kept] = mesh.fill[e];
+    numbers[kept++] = e;
+  }
+  mesh.tets.resize(kept);
+  if (!mesh.fill.empty()) mesh.fill.resize(kept);
+}
+
+/// Elements that lie in one place are no mesh: left out where they are the same, refused else. Returns how many were
+/// left out.
+std::size_t mend_overlaps(const MeshSource& source, TetMesh& mesh) {
+  if (!find_overlap_at_face(mesh)) return 0;
+  std::vector<std::size_t> numbers(mesh.tets.size());
+  const std::size_t before = mesh.tets.size();
+  drop_repeated_tets(mesh, numbers);
+  if (const auto overlap = find_overlap_at_face(mesh))
+    throw broken_file(source, "",
+                      fmt::format("tetrahedra {} and {} overlap: they lie on one side of a face that they share",
+                                  numbers[at((*overlap)[0])] + 1, numbers[at((*overlap)[1])] + 1),
+                      "at most two tetrahedra at a face, one on each side",
+                      "Leave one of them out, or mesh the body again");
+  return before - mesh.tets.size();
 }
 
 }  // namespace
@@ -111,24 +165,17 @@ TetMesh read_tet_mesh(const std::string& path, const Log& log) {
 }
 
 TetMesh decode_tet_mesh(const std::string& name, std::string_view bytes, const std::string& extension, const Log& log) {
-  const MeshSource source{name, bytes};
+  const MeshSource source{name, detail::text_of({name, bytes})};  // all four begin with text
   const Format* const format =
       std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& f) { return extension == f.extension; });
   if (format == std::end(kFormats))
     throw detail::unread_variant(source, fmt::format("the format '{}' of tetrahedra", extension),
                                  ".mesh (Medit), .msh (Gmsh), .vtk, .vtu (VTK)");
-  const TetFileContents contents = format->read(source);
-  check_nodes(source, contents);
-  check_fill(source, contents);
   TetMesh mesh;
-  mesh.nodes = contents.nodes;
-  mesh.fill = contents.fill;
-  std::size_t inverted = 0;
-  for (std::size_t e = 0; e < contents.tets.size(); ++e) {
-    mesh.tets.push_back(checked_tet(source, contents, e));
-    inverted += orient(source, mesh.nodes, e, mesh.tets.back()) ? 1 : 0;
-  }
+  const std::size_t inverted = take_contents(source, format->read(source), mesh);
   if (inverted > 0) log.info(fmt::format("{}: {} inverted tetrahedra were turned round", name, inverted));
+  if (const std::size_t repeated = mend_overlaps(source, mesh); repeated > 0)
+    log.info(fmt::format("{}: {} tetrahedra that it has twice were left out", name, repeated));
   if (const std::size_t dropped = drop_unused_nodes(mesh); dropped > 0)
     log.info(fmt::format("{}: {} nodes that no tetrahedron uses were left out", name, dropped));
   return mesh;

@@ -30,6 +30,7 @@ class GmshReader {
         read_element_data();
       in_.skip_past("$End" + section.substr(1));
     }
+    number_nodes();
     for (const std::int64_t tag : tet_tags_)
       if (const auto found = fill_.find(tag); found != fill_.end()) contents_.fill.push_back(found->second);
     return std::move(contents_);
@@ -37,7 +38,12 @@ class GmshReader {
 
  private:
   void read_format() {
-    if (in_.word() != "$MeshFormat")
+    std::string_view section = in_.word();
+    while (section == "$Comments") {
+      in_.skip_past("$EndComments");
+      section = in_.word();
+    }
+    if (section != "$MeshFormat")
       throw unread_variant(in_.source(), "a .msh file that does not begin with $MeshFormat",
                            "Gmsh's versions 2 and 4.1");
     const std::string version(in_.word());
@@ -107,22 +113,27 @@ class GmshReader {
     return skipped->second;
   }
 
-  std::int64_t node_of(std::int64_t tag) const {
-    const Index node = tags_.find(static_cast<std::uint64_t>(tag));
-    if (node < 0)
-      throw broken_file(in_.source(), in_.place(), fmt::format("an element refers to node {}, which is not given", tag),
-                        fmt::format("one of the file's {}", contents_.nodes.size()), "Export the mesh again");
-    return node;
+  /// Turns the tags of the elements' nodes into their numbers: only now, as nodes may come behind the elements.
+  void number_nodes() {
+    for (std::size_t e = 0; e < contents_.tets.size(); ++e)
+      for (std::int64_t& node : contents_.tets[e]) {
+        const Index number = tags_.find(static_cast<std::uint64_t>(node));
+        if (number < 0)
+          throw broken_file(in_.source(), "",
+                            fmt::format("element {} refers to node {}, which is not given", tet_tags_[e], node),
+                            fmt::format("one of the file's {}", contents_.nodes.size()), "Export the mesh again");
+        node = number;
+      }
   }
 
-  /// One element's nodes, read by `next`. element: its tag.
+  /// One element's nodes, as tags, read by `next`. element: its tag.
   template <typename Next>
   void read_element(std::int64_t type, std::int64_t element, const Next& next) {
     std::array<std::int64_t, 4> tet{};
     const std::size_t count = nodes_of(type);
     for (std::size_t k = 0; k < count; ++k) {
       const std::int64_t tag = next();
-      if (type == kTetrahedron) tet[k] = node_of(tag);
+      if (type == kTetrahedron) tet[k] = tag;
     }
     if (type != kTetrahedron) return;
     contents_.tets.push_back(tet);

@@ -44,19 +44,20 @@ void read_tetrahedra(ByteReader& in, TetFileContents& contents) {
 }  // namespace
 
 TetFileContents read_medit(const MeshSource& source) {
-  ByteReader in(source);
+  ByteReader in(source, '#');
   TetFileContents contents;
   if (in.word() != "MeshVersionFormatted")
     throw unread_variant(source, "a .mesh file that does not begin with MeshVersionFormatted", "Medit's text format");
   in.integer();
   while (!in.at_end()) {
     const std::string_view keyword = in.word();
-    if (keyword.front() == '#') {
-      in.line();
-    } else if (keyword == "End") {
+    if (keyword == "End") {
       break;
     } else if (keyword == "Dimension") {
       if (in.integer() != 3) throw unread_variant(source, "a plane mesh", "Dimension 3");
+    } else if ((keyword == "Vertices" && !contents.nodes.empty()) ||
+               (keyword == "Tetrahedra" && !contents.tets.empty())) {
+      throw unread_variant(source, fmt::format("a second section '{}'", keyword), "one of each");
     } else if (keyword == "Vertices") {
       read_vertices(in, contents);
     } else if (keyword == "Tetrahedra") {
@@ -64,7 +65,7 @@ TetFileContents read_medit(const MeshSource& source) {
     } else if (const auto skipped = kSkippedSections.find(keyword); skipped != kSkippedSections.end()) {
       const std::size_t numbers = in.count(2 * skipped->second) * skipped->second;
       for (std::size_t i = 0; i < numbers; ++i) in.number();
-    } else {
+    } else if (in.at_end() || in.word() != "0") {  // "Hexahedra 0" says that there are none
       throw wrong_element(source, fmt::format("an entry '{}'", keyword.substr(0, 30)));
     }
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,7 +47,9 @@ inline Error unread_variant(const MeshSource& source, const std::string& what, c
 /// Walks over the bytes of a file: words, lines and binary values.
 class ByteReader {
  public:
-  explicit ByteReader(const MeshSource& source) : source_(source), rest_(source.bytes) {}
+  /// comment: what begins a comment up to the end of its line, where the format has some; never inside a word.
+  explicit ByteReader(const MeshSource& source, std::optional<char> comment = std::nullopt)
+      : source_(source), rest_(source.bytes), comment_(comment) {}
 
   const MeshSource& source() const { return source_; }
   std::string_view rest() const { return rest_; }
@@ -58,6 +61,7 @@ class ByteReader {
   }
   /// The next word; an error at the end of the file.
   std::string_view word() {
+    skip_blanks();
     const std::string_view found = take_word(rest_);
     if (found.empty()) throw cut_off();
     return found;
@@ -102,8 +106,10 @@ class ByteReader {
     if (rest_.size() < bytes) throw cut_off();
     rest_.remove_prefix(bytes);
   }
+  /// Comments are blanks, too.
   void skip_blanks() {
-    while (!rest_.empty() && is_blank(rest_.front())) rest_.remove_prefix(1);
+    while (!rest_.empty() && (is_blank(rest_.front()) || rest_.front() == comment_))
+      rest_.remove_prefix(rest_.front() == comment_ ? std::min(rest_.find('\n'), rest_.size()) : 1);
   }
   /// Steps behind the next occurrence of `text`.
   void skip_past(std::string_view text) {
@@ -124,6 +130,7 @@ class ByteReader {
  private:
   const MeshSource& source_;
   std::string_view rest_;
+  std::optional<char> comment_;
 };
 
 }  // namespace softreel::detail

@@ -11,12 +11,12 @@ void send(GLenum target, GLuint buffer, const std::vector<T>& values) {
   glBufferData(target, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data(), GL_STREAM_DRAW);
 }
 
-/// The values of the mesh's vertices at those of the card; none of none.
-std::vector<Vec3f> gathered(const std::vector<Vec3f>& values, const std::vector<Index>& vertex_of) {
+/// The mesh's values at the vertices of the card, given where each comes from; none of none.
+std::vector<Vec3f> gathered(const std::vector<Vec3f>& values, const std::vector<Index>& from) {
   std::vector<Vec3f> result;
   if (values.empty()) return result;
-  result.reserve(vertex_of.size());
-  for (const Index v : vertex_of) result.push_back(values[static_cast<std::size_t>(v)]);
+  result.reserve(from.size());
+  for (const Index v : from) result.push_back(values[static_cast<std::size_t>(v)]);
   return result;
 }
 
@@ -69,13 +69,15 @@ void GpuMesh::upload(const MotionMesh& mesh) {
 }
 
 void GpuMesh::upload_triangles(const MotionMesh& mesh) {
-  const bool own = mesh.lines.has_value(), split = own || !mesh.coloring.maps.empty();
+  const bool own = mesh.lines.has_value();
+  const bool split = own || !mesh.coloring.maps.empty() || !mesh.normal_triangles.empty();
   const bool same = own == has_own_corners_ && split == is_split_ && mesh.triangles == triangles_ &&
-                    mesh.coloring.triangles == coordinate_triangles_;
+                    mesh.normal_triangles == normal_triangles_ && mesh.coloring.triangles == coordinate_triangles_;
   if (same) return;
   has_own_corners_ = own;
   is_split_ = split;
   triangles_ = mesh.triangles;
+  normal_triangles_ = mesh.normal_triangles;
   coordinate_triangles_ = mesh.coloring.triangles;
   corners_ = own ? split_all_corners(mesh) : split ? split_at_seams(mesh) : CornerVertices{};
   solid_ = solid_side(mesh.times.back().positions, mesh.triangles);
@@ -95,7 +97,7 @@ void GpuMesh::upload_split(const MotionMesh& mesh, const std::vector<Vec3f>& col
   const MotionMesh::Time& time = mesh.times.back();
   fill(kPosition, gathered(time.positions, corners_.vertex_of));
   fill(kNormal, has_flat_corners(mesh) ? face_normals(time.positions, mesh.triangles)
-                                       : gathered(time.normals, corners_.vertex_of));
+                                       : gathered(time.normals, corners_.normal_of));
   fill(kColor, gathered(colors, corners_.vertex_of));
   fill(kCoordinate, gathered_coordinates(mesh.coloring, corners_.coordinate_of));
   fill(kCorner, mesh.lines ? edge_weights(mesh) : std::vector<Vec3f>{});

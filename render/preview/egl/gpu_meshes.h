@@ -41,7 +41,7 @@ class GpuMesh {
 
   GLuint array_ = 0;
   GLuint buffers_[kBuffers] = {};
-  std::vector<Triangle> triangles_, coordinate_triangles_;  ///< that were sent, of the mesh
+  std::vector<Triangle> triangles_, normal_triangles_, coordinate_triangles_;  ///< that were sent, of the mesh
   bool has_own_corners_ = false, is_split_ = false;
   CornerVertices corners_;  ///< where vertices are split
   SolidSide solid_ = SolidSide::None;

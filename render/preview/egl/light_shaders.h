@@ -13,9 +13,9 @@ uniform bool flat_normals;
 uniform bool upright_ground;          // the pattern follows world axes
 uniform float checker, ground_height, sweep, fade_start, fade_end;
 uniform vec3 checker_color, across, along;
-uniform vec3 lamp_center[8], lamp_normal[8], lamp_radiance[8];
-uniform float lamp_area[8];
-uniform vec3 sun_towards[4], sun_irradiance[4];
+uniform vec3 lamp_center[LAMPS], lamp_normal[LAMPS], lamp_radiance[LAMPS];
+uniform float lamp_area[LAMPS];
+uniform vec3 sun_towards[SUNS], sun_irradiance[SUNS];
 uniform sampler2DArrayShadow shadow_maps;
 uniform mat4 shadow_from_world[4];
 uniform float shadow_share;      // a texel, share of a map's edge
@@ -198,9 +198,8 @@ void light_surface(vec3 albedo) {
 #endif
   float nv = max(dot(n, v), 0.0);
   vec3 r = reflect(-v, n);
-  // Irradiance / pi of a gradient: between its values at the pole and at the horizon, both hemispheres mixed by height.
-  vec3 upper = mix(horizon, zenith, 0.6), lower = mix(horizon, nadir, 0.6);
-  lit_diffuse = mix(lower, upper, 0.5 + 0.5 * n.y);
+  vec3 open_sky = sky_light(n);
+  lit_diffuse = open_sky;
 #if CATCHER
   unshadowed = lit_diffuse;
 #endif
@@ -214,7 +213,7 @@ void light_surface(vec3 albedo) {
   Skin skin = Skin(n, v, f0, rough, max(rough * rough, 0.01));
   vec3 gloss = LIGHTS(skin);
   vec3 mirrored = reflectance(f0, nv, rough);
-  gloss += mirrored * environment(mix(r.y, 0.5 * n.y, rough));
+  gloss += mirrored * mirrored_sky(r, n, rough);
   lit_diffuse *= 1.0 - metallic;
 #if RICH
   lit_diffuse *= 1.0 - transmission;
@@ -222,11 +221,11 @@ void light_surface(vec3 albedo) {
   float inward = sqrt(max(1.0 - (1.0 - nv * nv) * glass_bend, 0.0));
   through = clear * (1.0 - mirrored) * exp(-absorption * (chord * inward));
   float varnish = coat * mix(coat_f0, 1.0, rest_of(nv));
-  // What fibres reflect of an even sky, within 0.06 of render/pathtrace/sheen.h. nv may be rounded to above 1, where
+  // What fibres reflect of an even sky, within 0.06 of render/pathtrace/materials/sheen.h. nv may be rounded to above 1, where
   // the power is undefined.
   float cover = 0.17 / sheen_exponent + 0.73 * pow(max(1.0 - nv, 0.0), 1.8 + 0.13 * sheen_exponent);
   vec3 under = (1.0 - varnish) * mix(vec3(1.0), coat_color, coat) * (1.0 - cover * sheen_color);
-  top_gloss += varnish * environment(mix(r.y, 0.5 * n.y, sqrt(coat_alpha))) + cover * sheen_color * mix(lower, upper, 0.5 + 0.5 * n.y);
+  top_gloss += varnish * mirrored_sky(r, n, sqrt(coat_alpha)) + cover * sheen_color * open_sky;
   lit_diffuse *= under;
   through *= under;
   gloss = gloss * under + top_gloss;
@@ -239,10 +238,10 @@ void light_surface(vec3 albedo) {
 vec3 seen_radiance(vec3 albedo) {
   vec3 sum = albedo * lit_diffuse + lit_other;
 #if RICH && !GLASS
-  sum += through * environment(mix(-view.y, reflect(-view, surface_normal).y, 0.3));
+  sum += through * seen_sky(mix(-view, reflect(-view, surface_normal), 0.3));
 #endif
 #if GROUND
-  sum = mix(sum, environment(-view.y), smoothstep(fade_start, fade_end, length(world_position.xz)));
+  sum = mix(sum, seen_sky(-view), smoothstep(fade_start, fade_end, length(world_position.xz)));
 #endif
   return sum;
 }
@@ -250,7 +249,7 @@ vec3 seen_radiance(vec3 albedo) {
 #if GLASS
 // Display values are no light, and do not add up: what glass itself sends counts as it would before the surroundings.
 vec3 before_glass(vec3 albedo) {
-  vec3 behind = through * environment(-view.y);
+  vec3 behind = through * seen_sky(-view);
   return max(display(albedo * lit_diffuse + lit_other + behind) - display(behind), 0.0);
 }
 

@@ -14,6 +14,7 @@
 #include "render/preview/egl/egl_context.h"
 #include "render/preview/egl/gl_objects.h"
 #include "render/preview/egl/gpu_meshes.h"
+#include "render/preview/egl/gpu_sky.h"
 #include "render/preview/egl/gpu_textures.h"
 #include "render/preview/egl/preview_shaders.h"
 #include "render/preview/egl/surface_programs.h"
@@ -21,7 +22,6 @@
 #include "render/preview/preview.h"
 #include "render/preview/shadow_views.h"
 #include "render/scene/camera_frame.h"
-#include "render/scene/environment_radiance.h"
 #include "render/scene/ground_mesh.h"
 
 namespace softreel {
@@ -34,35 +34,13 @@ constexpr float kVertexLitSize = 5;  ///< pixels: smaller triangles are lit at t
 /// Clip coordinates: the camera's window fills the picture, depth from `near` to `far` metres.
 Eigen::Matrix4f clip_from_world(const CameraFrame& camera, float near, float far) {
   Eigen::Matrix4f clip;
-  clip.row(0) << camera.right.transpose() / camera.half_width, 0;
-  clip.row(1) << camera.up.transpose() / camera.half_height, 0;
+  clip.row(0) << (camera.right - camera.center_x * camera.forward).transpose() / camera.half_width, 0;
+  clip.row(1) << (camera.up - camera.center_y * camera.forward).transpose() / camera.half_height, 0;
   clip.row(2) << camera.forward.transpose() * ((far + near) / (far - near)), -2 * far * near / (far - near);
   clip.row(3) << camera.forward.transpose(), 0;
   Eigen::Matrix4f shift = Eigen::Matrix4f::Identity();
   shift.block<3, 1>(0, 3) = -camera.position;
   return clip * shift;
-}
-
-/// The environment as the shaders know it; an image is averaged around pole, horizon and pole.
-Environment as_gradient(const Environment& environment) {
-  if (!environment.image) return environment;
-  const auto mean = [&](float low, float high) {
-    constexpr int kRows = 16, kColumns = 32;
-    Vec3f sum = Vec3f::Zero();
-    for (int r = 0; r < kRows; ++r)
-      for (int c = 0; c < kColumns; ++c) {
-        const float y = low + (high - low) * (static_cast<float>(r) + 0.5f) / kRows;
-        const float azimuth = 2 * std::numbers::pi_v<float> * (static_cast<float>(c) + 0.5f) / kColumns,
-                    ring = std::sqrt(1 - y * y);
-        sum += environment_radiance(environment, Vec3f(ring * std::sin(azimuth), y, ring * std::cos(azimuth)));
-      }
-    return Vec3f(sum / (kRows * kColumns));
-  };
-  Environment gradient;
-  gradient.zenith = mean(0.4f, 1);
-  gradient.horizon = mean(-0.3f, 0.3f);
-  gradient.nadir = mean(-1, -0.4f);
-  return gradient;
 }
 
 /// Root of the mean area of a mesh's triangles as pixels at its mean distance, face on.
@@ -142,6 +120,8 @@ class EglPreview : public Preview {
 
  private:
   void upload(const Scene& scene, const MotionMesh& ground);
+  /// Null if the surroundings are no image.
+  const GpuSky* bound_sky(const Environment& environment);
   void draw_shadows(const std::vector<ShadowView>& views);
   void draw_bodies(const Scene& scene, const CameraFrame& camera, int width, SurfacePrograms& programs) const;
   void draw_glass(const Scene& scene, const CameraFrame& camera, int width, SurfacePrograms& programs,
@@ -161,6 +141,7 @@ class EglPreview : public Preview {
   std::deque<GpuMesh> bodies_;             ///< of the last scene
   std::optional<GpuMesh> ground_;
   GpuTextures textures_;
+  GpuSky sky_;
   GLuint no_array_ = 0;  ///< OpenGL draws nothing without one, even where no vertex has an attribute
 };
 
@@ -171,6 +152,12 @@ void EglPreview::upload(const Scene& scene, const MotionMesh& ground) {
   if (!scene.ground) return;
   if (!ground_) ground_.emplace();
   ground_->upload(ground);
+}
+
+const GpuSky* EglPreview::bound_sky(const Environment& environment) {
+  if (!environment.image) return nullptr;
+  sky_.bind(kSkyUnit, environment.image);
+  return &sky_;
 }
 
 void EglPreview::draw_shadows(const std::vector<ShadowView>& views) {
@@ -229,9 +216,9 @@ void EglPreview::draw_glass(const Scene& scene, const CameraFrame& camera, int w
 void EglPreview::draw_background(const SurfaceView& view, const CameraFrame& camera) {
   const GlProgram& background =
       programs_.of(kBackgroundVertexShader,
-                   shader_head(view.view) + kEnvironmentFunctions + kDisplayFunctions + kBackgroundFragmentShader);
+                   shader_head(view) + kEnvironmentFunctions + kDisplayFunctions + kBackgroundFragmentShader);
   set_surroundings(background, view);
-  background.set("forward", camera.forward);
+  background.set("forward", camera.window_point(0, 0));
   background.set("right", Vec3f(camera.half_width * camera.right));
   background.set("up", Vec3f(camera.half_height * camera.up));
   if (no_array_ == 0) glGenVertexArrays(1, &no_array_);
@@ -299,13 +286,17 @@ void EglPreview::draw_surroundings(const Scene& scene, const CameraFrame& camera
 
 DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTransform view, float exposure,
                               const PreviewStyle& style) {
-  const CameraFrame camera = camera_frame(scene.camera, width, height);
+  const CameraFrame camera = seen_through(style.window, camera_frame(scene.camera, width, height), width, height);
+  const int picture_height = height;
+  if (style.window != PixelWindow{}) width = style.window.width(), height = style.window.height();
   const MotionMesh ground = scene.ground ? ground_mesh(*scene.ground, scene.camera, 1) : MotionMesh{};
   const DepthRange depths = depth_range(scene.meshes, ground, style.marks, camera);
   const Eigen::Matrix4f clip = clip_from_world(camera, depths.near, depths.far);
-  SurfaceView seen{view, exposure, as_gradient(scene.environment), {}, clip, camera.position};
+  SurfaceView seen{view, exposure, scene.environment, {}, clip, camera.position};
+  seen.pixel_angle = 2 * camera.half_width / static_cast<float>(width);
   if (!style.fast) seen.shadows = shadow_views(scene, kMaxPreviewShadows, kShadowSize);
-  const std::vector<OverlayVertex> marks = overlay_triangles(style.marks, clip, camera.position, width, height);
+  const std::vector<OverlayVertex> marks =
+      overlay_triangles(style.marks, clip, camera.position, width, height, picture_height);
   const PixelRect whole{0, 0, width, height};
   const PixelRect fine = style.fast ? whole : fine_region(scene, ground, marks, clip, whole);
   const Surroundings around{seen, ground,
@@ -315,6 +306,7 @@ DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTra
 
   context_.make_current();
   if (!canvas_ || !canvas_->is(width, height, samples)) canvas_ = std::make_unique<Canvas>(width, height, samples);
+  seen.sky = bound_sky(scene.environment);
   upload(scene, ground);
   draw_shadows(seen.shadows);
   SurfacePrograms programs(scene, seen, programs_, textures_);

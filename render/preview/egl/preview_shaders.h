@@ -3,17 +3,54 @@
 
 namespace softreel {
 
-inline constexpr int kMaxPreviewLamps = 8;
-inline constexpr int kMaxPreviewSuns = 4;
 inline constexpr int kMaxPreviewShadows = 4;
 inline constexpr int kShadowSize = 1024;  ///< pixels of a shadow map's edge
 
-/// The environment's gradient; an image is summed up by three colours.
+/// The surroundings in a direction, which need not be of length 1 where they are an image: the gradient, whose place
+/// is the height of the direction, or the image. SKY_IMAGE: 0 or 1.
+///   sky_light     irradiance / pi
+///   mirrored_sky  what a surface of a roughness mirrors
 inline constexpr const char* kEnvironmentFunctions = R"(
+#if SKY_IMAGE
+uniform sampler2D sky_map;        // rows from straight up to straight down
+uniform vec2 sky_turn;            // cosine and sine of the rotation
+uniform float sky_strength;
+uniform float sky_texels;         // a radian of the horizon
+uniform float sky_pixel;          // rad, of the picture
+uniform vec3 sky_harmonics[9];    // as render/preview/sky_harmonics.h
+vec3 turned(vec3 d) {
+  return vec3(sky_turn.x * d.x - sky_turn.y * d.z, d.y, sky_turn.y * d.x + sky_turn.x * d.z);
+}
+vec3 blurred_sky(vec3 direction, float blur) {
+  vec3 d = turned(normalize(direction));
+  // Straight up and down any azimuth will do, but atan(0, 0) may be anything.
+  vec2 at = vec2(atan(d.x, 1e-20 - d.z) / 6.28318531 + 0.5, acos(clamp(d.y, -1.0, 1.0)) / 3.14159265);
+  return sky_strength * textureLod(sky_map, at, log2(max(blur, sky_pixel) * sky_texels)).rgb;
+}
+vec3 seen_sky(vec3 direction) { return blurred_sky(direction, 0.0); }
+vec3 mirrored_sky(vec3 reflected, vec3 n, float rough) {
+  return blurred_sky(mix(reflected, 0.5 * n, rough), rough * rough);
+}
+vec3 sky_light(vec3 n) {
+  vec3 d = turned(n);
+  vec3 sum = sky_harmonics[0] + sky_harmonics[1] * d.x + sky_harmonics[2] * d.y + sky_harmonics[3] * d.z +
+             sky_harmonics[4] * (d.x * d.y) + sky_harmonics[5] * (d.y * d.z) + sky_harmonics[6] * (d.x * d.z) +
+             sky_harmonics[7] * (3.0 * d.y * d.y - 1.0) + sky_harmonics[8] * (d.x * d.x - d.z * d.z);
+  return sky_strength * max(sum, 0.0);
+}
+#else
 uniform vec3 zenith, horizon, nadir;
 vec3 environment(float height) {
   return mix(horizon, height > 0.0 ? zenith : nadir, abs(height));
 }
+vec3 seen_sky(vec3 direction) { return environment(direction.y); }
+vec3 mirrored_sky(vec3 reflected, vec3 n, float rough) { return environment(mix(reflected.y, 0.5 * n.y, rough)); }
+// Between the values at the pole and at the horizon, both hemispheres mixed by height.
+vec3 sky_light(vec3 n) {
+  vec3 upper = mix(horizon, zenith, 0.6), lower = mix(horizon, nadir, 0.6);
+  return mix(lower, upper, 0.5 + 0.5 * n.y);
+}
+#endif
 )";
 
 /// Display values, as apply_view of render/image/view_transform.h. VIEW: 0 standard, 1 filmic, 2 aces-fit, 3 raw.
@@ -63,7 +100,7 @@ inline constexpr const char* kBackgroundFragmentShader = R"(
 in vec3 direction;
 out vec4 color;
 void main() {
-  color = vec4(display(environment(normalize(direction).y)), 1.0);
+  color = vec4(display(seen_sky(normalize(direction))), 1.0);
 }
 )";
 

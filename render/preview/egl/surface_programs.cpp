@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "render/preview/egl/light_shaders.h"
 #include "render/preview/egl/preview_shaders.h"
@@ -11,28 +12,8 @@
 namespace softreel {
 namespace {
 
-/// Units of textures; 0 has the shadow maps.
-enum Unit : GLuint { kColorUnit = 1, kRoughnessUnit, kNormalUnit, kBumpUnit };
-
-/// What a lamp shows to a point that it faces, m^2.
-float seen_area(const AreaLight& lamp) {
-  switch (lamp.shape) {
-    case LampShape::Rectangle:
-      return 4 * lamp.u.cross(lamp.v).norm();
-    case LampShape::Disk:
-      return std::numbers::pi_v<float> * lamp.u.cross(lamp.v).norm();
-    case LampShape::Sphere:
-      break;
-  }
-  return std::numbers::pi_v<float> * lamp.u.squaredNorm();
-}
-
-/// More lights than the shader has room for: the first ones, which a shot lists by importance.
-int lamps_of(const Scene& scene) {
-  return std::min(static_cast<int>(scene.area_lights.size()), kMaxPreviewLamps);
-}
-int suns_of(const Scene& scene) {
-  return std::min(static_cast<int>(scene.suns.size()), kMaxPreviewSuns);
+std::size_t index_at(const std::vector<int>& indices, int k) {
+  return static_cast<std::size_t>(indices[static_cast<std::size_t>(k)]);
 }
 
 bool is_rich(const Appearance& look) {
@@ -59,6 +40,17 @@ float mean_chord(const MotionMesh& mesh) {
   return area > 0 ? static_cast<float>(4 * std::abs(volume) / area) : 0.0f;
 }
 
+void set_sky(const GlProgram& program, const SurfaceView& view) {
+  const Environment& environment = view.environment;
+  program.set("sky_map", int{kSkyUnit});
+  glUniform2f(program.at("sky_turn"), std::cos(environment.rotation), std::sin(environment.rotation));
+  program.set("sky_strength", environment.strength);
+  program.set("sky_texels", static_cast<float>(view.sky->width()) / (2 * std::numbers::pi_v<float>));
+  program.set("sky_pixel", view.pixel_angle);
+  for (int k = 0; k < kSkyHarmonics; ++k)
+    program.set("sky_harmonics", k, view.sky->harmonics()[static_cast<std::size_t>(k)]);
+}
+
 float normal_reflectance(float ior) {
   const float slope = (ior - 1) / (ior + 1);
   return slope * slope;
@@ -66,16 +58,22 @@ float normal_reflectance(float ior) {
 
 }  // namespace
 
-std::string shader_head(ViewTransform view) {
-  return fmt::format("#version 330 core\n#define VIEW {}\n", static_cast<int>(view));
+std::string shader_head(const SurfaceView& view) {
+  return fmt::format("#version 330 core\n#define VIEW {}\n#define SKY_IMAGE {}\n", static_cast<int>(view.view),
+                     view.sky != nullptr ? 1 : 0);
 }
 
 void set_surroundings(const GlProgram& program, const SurfaceView& view) {
+  const Environment& environment = view.environment;
   program.use();
-  program.set("zenith", Vec3f(view.gradient.strength * view.gradient.zenith));
-  program.set("horizon", Vec3f(view.gradient.strength * view.gradient.horizon));
-  program.set("nadir", Vec3f(view.gradient.strength * view.gradient.nadir));
   program.set("exposure_scale", std::exp2(view.exposure));
+  if (view.sky != nullptr) {
+    set_sky(program, view);
+    return;
+  }
+  program.set("zenith", Vec3f(environment.strength * environment.zenith));
+  program.set("horizon", Vec3f(environment.strength * environment.horizon));
+  program.set("nadir", Vec3f(environment.strength * environment.nadir));
 }
 
 bool is_see_through(const Appearance& look) {
@@ -92,19 +90,19 @@ bool may_be_lit_at_vertices(const MotionMesh& mesh) {
 /// The sum of what the lights send.
 std::string SurfacePrograms::lights_text() const {
   std::string text = "vec3(0.0)";
-  const auto add = [&](bool is_sun, int light) {
+  const auto add = [&](bool is_sun, std::size_t place, int light) {
     int layer = -1;
     for (std::size_t k = 0; k < view_.shadows.size(); ++k)
       if (view_.shadows[k].is_sun == is_sun && view_.shadows[k].light == light) layer = static_cast<int>(k);
-    text += fmt::format(" + {}({}, {}, skin)", is_sun ? "from_sun" : "from_lamp", light, layer);
+    text += fmt::format(" + {}({}, {}, skin)", is_sun ? "from_sun" : "from_lamp", place, layer);
   };
-  for (int k = 0; k < lamps_of(scene_); ++k) add(false, k);
-  for (int k = 0; k < suns_of(scene_); ++k) add(true, k);
+  for (std::size_t k = 0; k < lights_.lamps.size(); ++k) add(false, k, lights_.lamps[k]);
+  for (std::size_t k = 0; k < lights_.suns.size(); ++k) add(true, k, lights_.suns[k]);
   return text;
 }
 
 const GlProgram& SurfacePrograms::program(const Needs& needs, bool at_vertices, bool in_shadow) {
-  std::string begin = shader_head(view_.view);
+  std::string begin = shader_head(view_);
   for (const char* name : {"GROUND", "CHECKER", "CATCHER", "COLOR_MAP", "ROUGHNESS_MAP", "NORMAL_MAP", "BUMP_MAP",
                            "MAPS", "RICH", "GLASS", "LINES"}) {
     const auto need = needs.find(name);
@@ -113,6 +111,8 @@ const GlProgram& SurfacePrograms::program(const Needs& needs, bool at_vertices, 
   begin += fmt::format("#define SHADOWS {}\n#define LIGHTS(skin) {}\n#define AT_VERTICES {}\n#define SHADOW_BLUR {}\n",
                        in_shadow ? view_.shadows.size() : 0, lights_text(), at_vertices ? 1 : 0,
                        at_vertices ? "5.0" : "1.0");
+  begin += fmt::format("#define LAMPS {}\n#define SUNS {}\n", std::max<std::size_t>(1, lights_.lamps.size()),
+                       std::max<std::size_t>(1, lights_.suns.size()));
   const std::string functions = std::string(kEnvironmentFunctions) + kDisplayFunctions + kSurfaceFunctions;
   const std::string attributes = begin + kSurfaceAttributes;
   const bool display_last = needs.at("COLOR_MAP") != 0;
@@ -170,16 +170,16 @@ void SurfacePrograms::set_picture(const GlProgram& surface) const {
 }
 
 void SurfacePrograms::set_lights(const GlProgram& surface) const {
-  for (int k = 0; k < lamps_of(scene_); ++k) {
-    const AreaLight& lamp = scene_.area_lights[static_cast<std::size_t>(k)];
+  for (int k = 0; k < static_cast<int>(lights_.lamps.size()); ++k) {
+    const AreaLight& lamp = scene_.area_lights[index_at(lights_.lamps, k)];
     const bool sphere = lamp.shape == LampShape::Sphere;
     surface.set("lamp_center", k, lamp.center);
     surface.set("lamp_normal", k, sphere ? Vec3f(Vec3f::Zero()) : Vec3f(lamp.u.cross(lamp.v).normalized()));
     surface.set("lamp_radiance", k, lamp.radiance);
     surface.set("lamp_area", k, seen_area(lamp));
   }
-  for (int k = 0; k < suns_of(scene_); ++k) {
-    const SunLight& sun = scene_.suns[static_cast<std::size_t>(k)];
+  for (int k = 0; k < static_cast<int>(lights_.suns.size()); ++k) {
+    const SunLight& sun = scene_.suns[index_at(lights_.suns, k)];
     surface.set("sun_towards", k, Vec3f(-sun.direction.normalized()));
     surface.set("sun_irradiance", k, sun.irradiance);
   }

@@ -11,11 +11,16 @@
 
 #include "render/image/image_io.h"
 #include "render/preview/egl/gl_objects.h"
+#include "render/preview/egl/gpu_sky.h"
 #include "render/preview/egl/gpu_textures.h"
+#include "render/preview/preview_lights.h"
 #include "render/preview/shadow_views.h"
 #include "render/scene/scene.h"
 
 namespace softreel {
+
+/// Units of textures; 0 has the shadow maps.
+enum TextureUnit : GLuint { kColorUnit = 1, kRoughnessUnit, kNormalUnit, kBumpUnit, kSkyUnit };
 
 /// Programs by the text of their shaders, each made when it is first asked for.
 class GlPrograms {
@@ -32,14 +37,16 @@ class GlPrograms {
 struct SurfaceView {
   ViewTransform view = ViewTransform::Standard;
   float exposure = 0;
-  Environment gradient;             ///< without image
+  Environment environment;
   std::vector<ShadowView> shadows;  ///< in the layers of the texture at unit 0
   Eigen::Matrix4f clip_from_world;
   Vec3f eye;
+  float pixel_angle = 0;        ///< rad, across a pixel in the middle of the picture
+  const GpuSky* sky = nullptr;  ///< of the environment's image, bound to kSkyUnit; null: there is none
 };
 
 /// The first lines of a fragment shader.
-std::string shader_head(ViewTransform view);
+std::string shader_head(const SurfaceView& view);
 /// The environment and the exposure, for a program that is made current.
 void set_surroundings(const GlProgram& program, const SurfaceView& view);
 
@@ -52,7 +59,7 @@ bool may_be_lit_at_vertices(const MotionMesh& mesh);
 class SurfacePrograms {
  public:
   SurfacePrograms(const Scene& scene, const SurfaceView& view, GlPrograms& programs, GpuTextures& textures)
-      : scene_(scene), view_(view), programs_(programs), textures_(textures) {}
+      : scene_(scene), lights_(preview_lights(scene)), view_(view), programs_(programs), textures_(textures) {}
 
   /// Makes the program for a body current. glass: it has a second output, the factor of what is behind.
   void use_for_body(const MotionMesh& mesh, bool flat, bool at_vertices, bool glass);
@@ -73,6 +80,7 @@ class SurfacePrograms {
   void set_ground(const GlProgram& surface, const Ground& ground) const;
 
   const Scene& scene_;
+  const PreviewLights lights_;
   const SurfaceView& view_;
   GlPrograms& programs_;
   GpuTextures& textures_;

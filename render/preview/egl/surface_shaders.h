@@ -4,12 +4,13 @@
 namespace softreel {
 
 /// Lamps are points with the irradiance of the rectangle's centre, wrapped around by its size; the environment lights
-/// by its gradient in the direction of the normal (diffuse) and of the reflection (gloss). Lights with a shadow map
+/// from the direction of the normal (diffuse) and of the reflection (gloss). Lights with a shadow map
 /// fall only where no body is in between; the edges of their shadows are about as soft as the map's texels.
 ///
 /// Software OpenGL computes both sides of every branch at every pixel, so shaders begin with "#version 330 core" and
 /// #defines of what they need (all 0 or 1, if nothing else is said):
-///   VIEW         0 standard, 1 filmic, 2 aces-fit, 3 raw
+///   VIEW         0 standard, 1 filmic, 2 aces-fit, 3 raw;  SKY_IMAGE: the surroundings are an image
+///   LAMPS, SUNS  how many there are, at least 1
 ///   LIGHTS(s)    the sum of from_lamp(k, layer, s) and from_sun of all lights, written out, as indices that are known
 ///                make it a sixth faster; layer: of the shadow map; -1: none
 ///   SHADOWS      how many maps;  SHADOW_BLUR: texels
@@ -72,7 +73,7 @@ in vec3 corner_weights;
 uniform float line_width, line_share;
 uniform vec3 line_color;
 
-// How much of a pixel is on a line, as render/pathtrace/edge_lines.h has them, by its distances to the edges.
+// How much of a pixel is on a line, as render/pathtrace/rays/edge_lines.h has them, by its distances to the edges.
 float line_coverage() {
   vec3 dx = dFdx(corner_weights), dy = dFdy(corner_weights);
   vec3 slope = max(sqrt(dx * dx + dy * dy), 1e-6);  // 1 / heights of the triangle, pixels

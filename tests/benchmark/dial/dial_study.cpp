@@ -10,9 +10,9 @@
 
 #include "tests/benchmark/bench.h"
 #include "tests/benchmark/dial/plane_bar.h"
+#include "tool/bodies/dial_pilots.h"
+#include "tool/bodies/dial_stage.h"
 #include "tool/shot/shot_load.h"
-#include "tool/stages/dial_pilots.h"
-#include "tool/stages/dial_stage.h"
 
 namespace softreel::bench {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/tet_mesh.h"
-#include "tool/stages/body_stage.h"
+#include "tool/bodies/body_stage.h"
 
 namespace softreel::bench {
 

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
+#include "tool/cache/process.h"
 #include "tool/report/version.h"
-#include "tool/stages/process.h"
 
 namespace softreel::bench {
 namespace {

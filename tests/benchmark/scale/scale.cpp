@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "tool/stages/process.h"
+#include "tool/cache/process.h"
 
 namespace softreel::bench {
 namespace {

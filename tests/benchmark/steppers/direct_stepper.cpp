@@ -147,14 +147,23 @@ class EulerStepper : public DirectStepper {
 
  private:
   StepSource source(std::span<const Vec3> base, double h) const {
-    return {rival_.positions, base, rival_.rotations, {h, h}, rival_.damping_stiffness, {}, -1, tension_limits_};
+    const bool turns = params_.rotation != RotationMethod::None;
+    return {rival_.positions,
+            base,
+            rival_.rotations,
+            {h, h},
+            rival_.damping_stiffness,
+            {},
+            -1,
+            tension_limits_,
+            turns ? std::span<const Vec3>(rival_.velocities) : std::span<const Vec3>()};
   }
 
   void assemble(const StepConstraints& constraints, double h) {
     std::vector<double> shares(rival_.body.tets.size()), node_terms(rival_.nodes());
     for (std::size_t e = 0; e < shares.size(); ++e) shares[e] = h * (h + rival_.damping_stiffness[e]);
     for (std::size_t i = 0; i < node_terms.size(); ++i) node_terms[i] = rival_.damped_mass(i, h);
-    find_stiffness_terms(rival_.body, rival_.positions, rival_.rotations, shares, Curvature::None, terms_, {},
+    find_stiffness_terms(rival_.body, rival_.positions, rival_.rotations, shares, Curvature::None, terms_,
                          rival_.threads);
     terms_.curvatures = find_tension_curvatures(rival_.body, source({}, h), rival_.threads);
     assembler_.assemble(terms_, node_terms, system_.matrix, rival_.threads);

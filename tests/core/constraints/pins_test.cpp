@@ -72,6 +72,21 @@ TEST(NodePins, NameBothPinsThatDisagree) {
       EXPECT_NE(conflict.find(part), std::string::npos) << conflict;
 }
 
+TEST(NodePins, AreComparedAtWholeFramesBetweenTheirKeys) {
+  // Where eases differ, pins agree at both keys and at the half.
+  const Body body;
+  Transform away;
+  away.translate.x() = 1e-3;
+  const auto conflict = [&](double last) {
+    Pin smooth = testing::make_pin({0}), linear = smooth;
+    smooth.track = {{{1, {}, Ease::Smooth}, {last, away, Ease::Smooth}}};
+    linear.track = {{{1, {}, Ease::Linear}, {last, away, Ease::Linear}}};
+    return NodePins({smooth, linear}, body.embedding, body.mesh).find_conflict();
+  };
+  EXPECT_NE(conflict(25).find("at frame 9"), std::string::npos) << conflict(25);
+  EXPECT_EQ(conflict(2), "") << "no step need end between them";
+}
+
 TEST(NodePins, MayDisagreeAtDifferentTimes) {
   const Body body;
   Transform away;

@@ -100,6 +100,31 @@ TEST(ActivePull, HasTheStiffnessOfItsForces) {
   }
 }
 
+TEST(ActivePull, CostsNothingWhereItsPointsMoveRigidly) {
+  // One point is at half an edge from where its bounded weights say.
+  Pulled pulled(0);
+  pulled.points[2] = Vec3(0.4, 0.9, 1.6);
+  pulled.embedding.weights[2] = {0.25, 0.25, 0.25, 0.25};
+  const Transform motion = pulled.pull.track.at(1);
+  for (std::size_t i = 0; i < pulled.positions.size(); ++i) pulled.positions[i] = motion.apply(pulled.mesh.nodes[i]);
+  EXPECT_LT(pull_energy(pulled.active(), pulled.positions), 1e-28);
+  std::vector<Grab> grabs(1);
+  pulled.pull.grab = true;
+  update_grabs({pulled.pull}, pulled.points, pulled.embedding, pulled.mesh, pulled.positions, 1, grabs);
+  EXPECT_LT((grabs[0].positions.at(2) - motion.apply(pulled.points[2])).norm(), 1e-14)
+      << "it is taken where it is seen";
+}
+
+TEST(ActivePull, KeepsTheWeightsOfPointsInsideTheirElements) {
+  Pulled pulled(0);
+  pulled.points[0] = Vec3::Zero();
+  for (std::size_t k = 0; k < 4; ++k)
+    pulled.points[0] +=
+        pulled.embedding.weights[0][k] * pulled.mesh.nodes[static_cast<std::size_t>(pulled.mesh.tets[0][k])];
+  const Spring spring = pulled.active().springs[0];
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(spring.weights[k], pulled.embedding.weights[0][k]);
+}
+
 TEST(ActivePulls, LeaveOutWhatDoesNotPull) {
   Pulled pulled(0);
   const auto count = [&](double frame) {

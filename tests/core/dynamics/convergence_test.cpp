@@ -69,7 +69,7 @@ std::vector<Vec3> solve(const TetMesh& mesh, const ElasticBody& body, const Manu
   BlockMatrixd matrix{stiffness_pattern(mesh.tets, static_cast<Index>(n)), {}};
   StiffnessTerms terms;
   find_stiffness_terms(body, mesh.nodes, std::vector<Quaternion>(mesh.tets.size(), Quaternion::Identity()),
-                       std::vector<double>(mesh.tets.size(), 1.0), Curvature::None, terms, {}, threads);
+                       std::vector<double>(mesh.tets.size(), 1.0), Curvature::None, terms, threads);
   StiffnessAssembler(mesh.tets, matrix.pattern).assemble(terms, std::vector<double>(n, 0.0), matrix, threads);
   std::vector<Vec3> load(n, Vec3::Zero()), result(n, Vec3::Zero());
   integrate(body, [&](std::size_t e, const Vec3& x, double weight, const std::array<double, 4>& shares) {

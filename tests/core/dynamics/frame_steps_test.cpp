@@ -136,6 +136,51 @@ TEST(FrameSteps, GetShorterUntilTheErrorIsWhatWasAskedFor) {
   }
 }
 
+/// Pulled up at its free end by a pull that is on for three fifths of a frame: by its range, or by its strength.
+BodyModel jolted_bar(bool by_range) {
+  BodyModel model = carried_bar(0);
+  model.gravity.setZero();
+  model.pins[0].track = testing::constant(Transform{});
+  Transform up;
+  up.translate = Vec3(0, 0.3, 0);
+  Pull pull =
+      testing::make_pull(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() > 0.79; }), up, 500);
+  if (by_range)
+    pull.active = {{2.2, 2.8}};
+  else
+    pull.stiffness = {{{2.2, 0, Ease::Linear}, {2.5, 1000, Ease::Linear}, {2.8, 0, Ease::Linear}}};
+  model.pulls = {pull};
+  return model;
+}
+
+TEST(FrameSteps, DoNotJumpOverAPullThatIsShorterThanAStep) {
+  for (const bool by_range : {true, false}) {
+    const BodyModel model = jolted_bar(by_range);
+    SolverParams fine = controlled(Integrator::Bdf2, 0);
+    fine.substeps = 512;
+    const std::vector<Vec3> exact = simulate(model, fine, 4).positions;
+    const double jolt = greatest_distance(exact, model.mesh.nodes);
+    EXPECT_GT(jolt, 0.01);
+    for (const double rest_tolerance : {0.0, 1e-7}) {
+      SolverParams params = controlled(Integrator::Bdf2, 1e-4);
+      params.rest_tolerance = rest_tolerance;
+      EXPECT_LT(greatest_distance(simulate(model, params, 4).positions, exact), 0.1 * jolt) << by_range;
+    }
+  }
+}
+
+TEST(FrameSteps, AreTheSameWhereConstraintsChangeAtFrames) {
+  // Were steps to end there anyway, nothing is to be cut.
+  BodyModel model = jolted_bar(true);
+  model.pulls[0].active = {{2, 3}};
+  model.pulls[0].track = {{{1, model.pulls[0].track.keys[0].value, Ease::Constant}, {3, {}, Ease::Constant}}};
+  BodyModel always = model;
+  always.pulls[0].active.clear();
+  always.pulls[0].stiffness = {{{1, 0, Ease::Constant}, {2, 500, Ease::Constant}, {4, 0, Ease::Constant}}};
+  const SolverParams params = controlled(Integrator::Bdf2, 1e-3);
+  EXPECT_EQ(simulate(model, params, 3).positions, simulate(always, params, 3).positions);
+}
+
 TEST(FrameSteps, GrowAgainWhereNothingMuchHappens) {
   BodyModel model = carried_bar(20);
   model.gravity.setZero();

@@ -34,7 +34,7 @@ struct Deformed {
     const Threads its_threads(thread_count);
     BlockMatrixd matrix{stiffness_pattern(mesh.tets, static_cast<Index>(mesh.nodes.size())), {}};
     StiffnessTerms terms;
-    find_stiffness_terms(body, positions, rotations, shares, curvature, terms, {}, its_threads);
+    find_stiffness_terms(body, positions, rotations, shares, curvature, terms, its_threads);
     StiffnessAssembler(mesh.tets, matrix.pattern).assemble(terms, node_terms, matrix, its_threads);
     return matrix;
   }

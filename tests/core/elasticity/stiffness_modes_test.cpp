@@ -39,7 +39,7 @@ Eigen::MatrixXd stiffness(const ElasticBody& body, const std::vector<Vec3>& posi
   find_rotations(body, RotationMethod::Consistent, positions, rotations, threads);
   BlockMatrixd matrix{stiffness_pattern(body.tets, static_cast<Index>(positions.size())), {}};
   StiffnessTerms terms;
-  find_stiffness_terms(body, positions, rotations, std::vector<double>(body.tets.size(), 1.0), curvature, terms, {},
+  find_stiffness_terms(body, positions, rotations, std::vector<double>(body.tets.size(), 1.0), curvature, terms,
                        threads);
   StiffnessAssembler(body.tets, matrix.pattern)
       .assemble(terms, std::vector<double>(positions.size(), 0.0), matrix, threads);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <random>
 
@@ -72,6 +73,34 @@ TEST(TriangulatePolygon, CoversACombAndAKeyhole) {
   expect_exact_cover(
       {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}},
       Vec3::UnitZ());
+}
+
+/// A band of `corners` corners that winds `turns` times round the origin.
+std::vector<Vec3> spiral(int corners, int turns) {
+  std::vector<Vec3> outside, inside;
+  for (int i = 0; i < corners / 2; ++i) {
+    const double angle = 2 * std::numbers::pi * turns * i / (corners / 2), r = 1 + angle;
+    const Vec3 direction(std::cos(angle), std::sin(angle), 0);
+    inside.push_back(r * direction);
+    outside.push_back((r + 2) * direction);
+  }
+  outside.insert(outside.end(), inside.rbegin(), inside.rend());
+  return outside;
+}
+
+TEST(TriangulatePolygon, IsSoonDoneWithThousandsOfCorners) {
+  const std::clock_t begin = std::clock();  // of the processor: other processes do not count
+  expect_exact_cover(spiral(12000, 40), Vec3::UnitZ());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> radius(1, 1.3);
+  std::vector<Vec3> spikes;  // of two radii a corner, so that they cross
+  for (int i = 0; i < 12000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 12000;
+    spikes.emplace_back(radius(random) * std::cos(angle), radius(random) * std::sin(angle), 0);
+  }
+  EXPECT_EQ(triangulate_polygon(spikes).size(), spikes.size() - 2);
+  // Hundredths of a second; minutes where each corner is compared with each again and again.
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5.0);
 }
 
 TEST(TriangulatePolygon, CutsWhatHasNoAreaOrCrossesItself) {

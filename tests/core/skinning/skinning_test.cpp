@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "core/mesh/corner_normals.h"
 #include "core/tetmesh/boundary_mending.h"
 #include "core/tetmesh/isosurface_stuffing.h"
 #include "tests/support/surfaces.h"
@@ -192,6 +193,43 @@ TEST(SkinNormals, RestIsUnchanged) {
   const Embedding embedding = embed_points(ball.points, ball.normals, ball.mesh, Threads(1));
   const std::vector<Vec3> skinned = skin_normals(ball.normals, embedding, ball.mesh, ball.mesh.nodes, Threads(1));
   for (std::size_t i = 0; i < skinned.size(); ++i) EXPECT_NEAR((skinned[i] - ball.normals[i]).norm(), 0, 1e-13);
+}
+
+TEST(SkinNormals, OfHardEdgesAreThoseOfTheDeformedFaces) {
+  const TetMesh tets = fill([](const Vec3& p) { return p.cwiseAbs().maxCoeff() - 1.1; }, 0.3);
+  SurfaceMesh cube = test::make_box(Vec3::Ones(), 3, Vec3::Zero());
+  const std::vector<Vec3> smooth = vertex_normals(cube, cube.positions);
+  const CornerNormals creases = corner_normals(cube, 0.7);
+  ASSERT_FALSE(creases.empty());
+  const Embedding embedding = embed_points(cube.positions, smooth, tets, Threads(1));
+  const std::vector<Vec3> nodes = moved(tets.nodes, shear(), Vec3(1, 2, 3));
+  const std::vector<Vec3> skinned =
+      skin_normals(creases.normals, embedding, tets, nodes, Threads(1), creases.vertex_of);
+  ASSERT_EQ(skinned.size(), creases.normals.size());
+  const std::vector<Vec3> points = skin_positions(cube.positions, embedding, tets, nodes, Threads(1));
+  for (std::size_t t = 0; t < cube.triangles.size(); ++t) {
+    const auto& [a, b, c] = cube.triangles[t];
+    const Vec3 face = (points[at(b)] - points[at(a)]).cross(points[at(c)] - points[at(a)]).normalized();
+    for (const Index n : creases.triangles[t]) EXPECT_NEAR((skinned[at(n)] - face).norm(), 0, 1e-11);
+  }
+  EXPECT_EQ(skin_normals(smooth, embedding, tets, nodes, Threads(4)),
+            skin_normals(smooth, embedding, tets, nodes, Threads(1)));
+}
+
+TEST(SkinNormals, OfAPointWithSeveralTurnWithIt) {
+  TetMesh mesh;
+  mesh.nodes = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+  mesh.tets = {{0, 1, 2, 3}};
+  const std::vector<Vec3> points{Vec3(0.1, 0.1, 0.1), Vec3(0.3, 0.2, 0.1)};
+  const Embedding embedding = embed_points(points, {2, Vec3::UnitX()}, mesh, Threads(1));
+  const Eigen::AngleAxisd turn(1.1, Vec3(3, 1, 2).normalized());
+  std::vector<Vec3> turned;
+  for (const Vec3& node : mesh.nodes) turned.push_back(turn * node);
+  const std::vector<Vec3> rest{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  const std::vector<Index> at_points{0, 1, 1};
+  const std::vector<Vec3> skinned = skin_normals(rest, embedding, mesh, turned, Threads(1), at_points);
+  ASSERT_EQ(skinned.size(), 3u);
+  for (std::size_t n = 0; n < 3; ++n) EXPECT_NEAR((skinned[n] - turn * rest[n]).norm(), 0, 1e-14) << n;
 }
 
 TEST(SkinValues, OfAnEvenQuantityAreItsValue) {

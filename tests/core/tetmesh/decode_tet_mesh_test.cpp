@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -226,6 +227,40 @@ TEST(DecodeTetMesh, ReadsTheFillOfGmshFiles) {
   EXPECT_TRUE(decode(other, ".msh").mesh.fill.empty());
 }
 
+TEST(DecodeTetMesh, TakesTextBehindAByteOrderMark) {
+  for (const char* extension : {".vtu", ".msh", ".mesh"})
+    expect_two_tets("\xef\xbb\xbf" + encoded(two_tets(), extension), extension);
+}
+
+TEST(DecodeTetMesh, SkipsCommentsAndEmptySectionsOfMedit) {
+  const std::string bytes = encoded(two_tets(), ".mesh");
+  const std::size_t vertices = bytes.find("Vertices"), second = bytes.find('\n', bytes.find('\n', vertices) + 1) + 1;
+  std::string changed = bytes.substr(0, second) + "# between two\n" + bytes.substr(second);
+  changed.insert(vertices, "Hexahedra # none\n0\n");
+  expect_two_tets("# by hand\n" + changed, ".mesh");
+}
+
+TEST(DecodeTetMesh, TakesSectionsOfGmshInAnyOrder) {
+  for (const std::string& bytes : {gmsh2_binary(), gmsh4(false), gmsh4(true)}) {
+    const std::size_t nodes = bytes.find("$Nodes"), elements = bytes.find("$Elements");
+    expect_two_tets("$Comments\n$MeshFormat\n$EndComments\n" + bytes.substr(0, nodes) + bytes.substr(elements) +
+                        bytes.substr(nodes, elements - nodes),
+                    ".msh");
+  }
+}
+
+TEST(DecodeTetMesh, TakesWordsOfVtkInLettersOfEitherSize) {
+  for (const bool with_offsets : {false, true}) {
+    std::string bytes = vtk(false, with_offsets);
+    const std::size_t words = bytes.find("ASCII");
+    for (std::size_t i = words; i < bytes.size(); ++i) {
+      const auto c = static_cast<unsigned char>(bytes[i]);
+      bytes[i] = static_cast<char>(std::isupper(c) != 0 ? std::tolower(c) : std::toupper(c));
+    }
+    expect_two_tets(bytes, ".vtk");
+  }
+}
+
 TEST(DecodeTetMesh, TurnsInvertedElementsRoundAndLeavesOutUnusedNodes) {
   TetMesh mesh = two_tets();
   std::swap(mesh.tets[1][0], mesh.tets[1][1]);
@@ -238,6 +273,33 @@ TEST(DecodeTetMesh, TurnsInvertedElementsRoundAndLeavesOutUnusedNodes) {
   ASSERT_EQ(decoded.lines.size(), 2U);
   EXPECT_NE(decoded.lines[0].find("1 inverted"), std::string::npos);
   EXPECT_NE(decoded.lines[1].find("1 nodes that no tetrahedron uses"), std::string::npos);
+}
+
+TEST(DecodeTetMesh, LeavesOutWhatItHasTwice) {
+  TetMesh mesh = two_tets();
+  mesh.tets.push_back({2, 0, 1, 3});  // the first again, in another order
+  const Decoded decoded = decode(encoded(mesh, ".mesh"), ".mesh");
+  EXPECT_EQ(decoded.mesh.tets, two_tets().tets);
+  ASSERT_EQ(decoded.lines.size(), 1U);
+  EXPECT_NE(decoded.lines[0].find("1 tetrahedra that it has twice"), std::string::npos) << decoded.lines[0];
+}
+
+TEST(DecodeTetMesh, RefusesTetrahedraThatOverlapAtAFace) {
+  TetMesh three = two_tets();  // a third one at the face that the two share
+  three.nodes.emplace_back(2, 2, 2);
+  three.tets.push_back({1, 5, 2, 3});
+  EXPECT_NE(failure(encoded(three, ".mesh"), ".mesh").find("tetrahedra 2 and 3 overlap"), std::string::npos);
+  TetMesh same_side = two_tets();
+  same_side.tets[1] = {0, 1, 2, 4};  // above the face z = 0, as the first is
+  EXPECT_NE(failure(encoded(same_side, ".mesh"), ".mesh").find("tetrahedra 1 and 2 overlap"), std::string::npos);
+}
+
+/// Where limbs lie side by side in one lattice tetrahedron, embedded meshes have it twice, with a common face.
+TEST(DecodeTetMesh, ReadsCopiesOfOneLatticeTetrahedron) {
+  TetMesh mesh = two_tets();
+  mesh.nodes.push_back(mesh.nodes[4]);
+  mesh.tets.push_back({1, 5, 2, 3});
+  EXPECT_EQ(decode(encoded(mesh, ".mesh"), ".mesh").mesh.tets, mesh.tets);
 }
 
 TEST(DecodeTetMesh, NamesWhatIsWrong) {
@@ -253,7 +315,9 @@ TEST(DecodeTetMesh, NamesWhatIsWrong) {
       {medit(kFourVertices, "9999999\n1 2 3 4 0\n"), ".mesh", "ends before"},
       {medit(kFourVertices, "1\n1 2 x 4 0\n"), ".mesh", "'x' is no whole number"},
       {medit("1\n0 nan 0 0\n", "1\n1 1 1 1 0\n"), ".mesh", "not finite"},
-      {"MeshVersionFormatted 2\nDimension 3\nHexahedra\n0\n", ".mesh", "Hexahedra"},
+      {"MeshVersionFormatted 2\nDimension 3\nHexahedra\n1\n", ".mesh", "Hexahedra"},
+      {"MeshVersionFormatted 2\nDimension 3\nHexahedra\n", ".mesh", "Hexahedra"},
+      {medit(kFourVertices, "1\n1 2 3 4 0\nTetrahedra\n1\n1 2 3 4 0\n"), ".mesh", "a second section 'Tetrahedra'"},
       {"solid", ".mesh", "MeshVersionFormatted"},
       {"$MeshFormat\n4 0 8\n$EndMeshFormat\n", ".msh", "version '4'"},
       {"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 4 0 1 1 1 9\n"
@@ -263,8 +327,11 @@ TEST(DecodeTetMesh, NamesWhatIsWrong) {
        "$EndElements\n",
        ".msh", "type 11"},
       {"# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n", ".vtk", "POLYDATA"},
+      {"# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nCELLS 1 5\n4.5 0 1 2 3\n", ".vtk",
+       "'4.5' is no whole number"},
       {"<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkZLibDataCompressor\">", ".vtu", "compressed"},
       {"", ".vtu", "ends before"},
+      {"\xfe\xff", ".msh", "UTF-16"},
       {"", ".abc", "'.abc'"},
   };
   for (const auto& [bytes, extension, named] : cases) {

@@ -122,6 +122,56 @@ TEST(FillToError, SaysWhatItCannotReach) {
   }
 }
 
+/// A rod of 10 by 0.02 by 0.02: a thousandth of the base edges' cells.
+SurfaceMesh thin_rod() {
+  return test::make_box({5, 0.01, 0.01}, 1, Vec3(5, 0.01, 0.01));
+}
+
+TEST(FillToError, KeepsARodThatIsMuchThinnerThanTheErrorInOnePiece) {
+  std::vector<std::string> lines;
+  const TetMesh mesh = fill(thin_rod(), 0.1, lines);
+  EXPECT_EQ(test::count_pieces(mesh), 1);
+  EXPECT_LE(measure_deviation(thin_rod(), mesh, Threads(1)).two_way(), 0.1);
+  EXPECT_GT(measure_quality(mesh, Threads(1)).volume, 0.8 * 0.004);
+  expect_good_graded(mesh);
+}
+
+TEST(FillToError, KeepsAThinLimbOnItsBody) {
+  SurfaceMesh surface = test::make_sphere(1, 12, Vec3::Zero());
+  test::append(surface, test::make_box({1.25, 0.01, 0.01}, 1, Vec3(1.75, 0, 0)));
+  std::vector<std::string> lines;
+  const TetMesh mesh = fill(surface, 0.05, lines);
+  EXPECT_EQ(test::count_pieces(mesh), 1);
+  EXPECT_LE(measure_deviation(surface, mesh, Threads(1)).two_way(), 0.05);
+}
+
+/// A cube with a rod of 3.5 m, 0.015 thick, and a second cube that touches the first at an edge: two pieces.
+TEST(FillToError, KeepsAThinLimbBesideASolidThatTouchesItsBody) {
+  SurfaceMesh surface = test::make_box({0.5, 0.5, 0.5}, 2, Vec3::Zero());
+  test::append(surface, test::make_box({1.75, 0.0075, 0.0075}, 1, Vec3(2, 0.01, 0.02)));
+  test::append(surface, test::make_box({0.5, 0.5, 0.5}, 2, Vec3(-1, 1, 0)));
+  std::vector<std::string> lines;
+  const TetMesh mesh = fill(surface, 0.1, lines);
+  EXPECT_EQ(test::count_pieces(mesh), 2);
+  EXPECT_LE(measure_deviation(surface, mesh, Threads(1)).two_way(), 0.1);
+  EXPECT_LT(mesh.tets.size(), 100000u) << "the cubes are two by right, and want no finer edges";
+  EXPECT_TRUE(lines.empty()) << lines.front();
+}
+
+/// A triangle that stands on an edge of a box: nothing is inside of it at any size.
+TEST(FillToError, GivesUpOnAFinWithoutThicknessAndSaysWhere) {
+  SurfaceMesh surface = test::make_box({0.5, 0.5, 0.5}, 3, Vec3::Zero());
+  const auto tip = static_cast<Index>(surface.positions.size());
+  surface.positions.emplace_back(1.5, 1.5, 1.5);
+  const Triangle first = surface.triangles.front();
+  surface.triangles.push_back({first[0], first[1], tip});
+  std::vector<std::string> lines;
+  const TetMesh mesh = fill(surface, 0.04, lines);
+  EXPECT_EQ(test::count_pieces(mesh), 1);
+  ASSERT_FALSE(lines.empty());
+  EXPECT_NE(lines.back().find("part 1 of 1"), std::string::npos) << lines.back();
+}
+
 /// Fills with so many graded elements, or with graded ones from an edge.
 TetMesh fill_graded(const SurfaceMesh& surface, double edge, std::int64_t tets, int threads = 1) {
   StageTimes times;
@@ -154,6 +204,32 @@ TEST(FillToCount, MeetsItAndIsNearerToAConeThanALattice) {
 
 TEST(FillToCount, MeetsItAndIsNearerToADumbbellThanALattice) {
   expect_nearer_than_a_lattice(dumbbell());
+}
+
+/// So few tetrahedra cannot hold it together; what is left of it is no answer.
+TEST(FillToCount, RefusesARodThatItsTetrahedraCannotHoldTogether) {
+  try {
+    const TetMesh mesh = fill_graded(thin_rod(), 0, 3000);
+    ADD_FAILURE() << "filled with " << mesh.tets.size();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Input);
+    for (const char* named : {"part 1 of 1", "too thin", "an edge of about"})
+      EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
+  }
+}
+
+/// A sliver in one piece, but its tips are missing: they are thinner than so many tetrahedra are.
+TEST(FillToCount, RefusesWhatLeavesOutMuchOfASliver) {
+  SurfaceMesh sliver;
+  sliver.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.4, 1, 0), Vec3(0.5, 0.3, 0.03)};
+  sliver.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  for (const std::int64_t tets : {100, 300, 1000}) try {
+      const TetMesh mesh = fill_graded(sliver, 0, tets);
+      EXPECT_EQ(test::count_pieces(mesh), 1);
+      EXPECT_GT(measure_quality(mesh, Threads(1)).volume, 0.8 * 0.005) << tets;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("too thin"), std::string::npos) << error.what();
+    }
 }
 
 TEST(FillToCount, GivesEqualBitsAtOneAndThreeThreads) {

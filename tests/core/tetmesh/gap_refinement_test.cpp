@@ -52,6 +52,16 @@ std::vector<BoundaryGap> many_gaps() {
   return gaps;
 }
 
+TEST(WidestReachable, LeavesOutGapsWhoseLeavesAreTheFinest) {
+  GradedBall ball;
+  const std::vector<BoundaryGap> gaps{gap_at(Vec3(1, 0, 0), 0.02), gap_at(Vec3(-1, 0, 0), 0.01)};
+  EXPECT_DOUBLE_EQ(widest_reachable(*ball.octree, gaps, {}), width_of(gaps[0]));
+  ball.octree->refine(gaps[0].on_surface, 0, 0.1);
+  EXPECT_DOUBLE_EQ(widest_reachable(*ball.octree, gaps, {}), width_of(gaps[1]));
+  ball.octree->refine(gaps[1].on_surface, 0, 0.1);
+  EXPECT_EQ(widest_reachable(*ball.octree, gaps, {}), 0.0);
+}
+
 TEST(RefineWidest, AddsAboutAsManyTetrahedraAsItExpects) {
   for (const double share : {0.2, 0.6, 1.2}) {
     SCOPED_TRACE(share);

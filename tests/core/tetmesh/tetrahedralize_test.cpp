@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/tetmesh/filling/waiting_log.h"
 #include "core/tetmesh/surface_parts.h"
 #include "tests/support/surfaces.h"
 #include "tests/support/tet_checks.h"
@@ -176,6 +177,21 @@ TEST_F(Tetrahedralize, FillsABoxOfSeparatePanels) {
   EXPECT_NEAR(measure_quality(mesh, Threads(1)).volume, 8, 0.8);
 }
 
+TEST(WaitingLog, PassesItsLinesOnWhereFillingThrows) {
+  std::vector<std::string> said;
+  const auto collect = [&](const std::string& line) { said.push_back(line); };
+  WaitingLog lines;
+  const auto refuse = [&] {
+    lines.sink().warn("thickened");
+    throw input_error("too thin");
+  };
+  EXPECT_THROW(lines.fill_or_pass_on({collect, collect}, refuse), Error);
+  EXPECT_EQ(said, std::vector<std::string>{"thickened"});
+  said.clear();
+  EXPECT_EQ(lines.fill_or_pass_on({collect, collect}, [] { return 1; }), 1);
+  EXPECT_TRUE(said.empty()) << "a mesh that is only tried";
+}
+
 /// The volume of an open part is about the middle of the open ones, and a small closed part's is no round-off of a
 /// place far away.
 TEST(FindParts, MeasuresClosedPartsAboutTheirOwnMiddle) {
@@ -205,6 +221,15 @@ TEST_F(Tetrahedralize, FillsASmallPartThatAnotherLatticeMeets) {
 TEST_F(Tetrahedralize, MeetsTheWantedCount) {
   for (const std::int64_t wanted : {2000, 9000, 30000}) {
     const TetMesh mesh = fill(test::make_torus(1, 0.35, 48, 24, Vec3::Zero()), {0, wanted});
+    EXPECT_NEAR(static_cast<double>(mesh.tets.size()) / static_cast<double>(wanted), 1.0, 0.05);
+  }
+}
+
+/// As thin as the lattice's edge: the count goes in jumps from lattice to lattice.
+TEST_F(Tetrahedralize, MeetsTheWantedCountOfASheet) {
+  const SurfaceMesh sheet = test::make_box(Vec3(0.5, 0.025, 0.5), 10, Vec3::Zero());
+  for (const std::int64_t wanted : {3000, 4000, 5000}) {
+    const TetMesh mesh = fill(sheet, {0, wanted});
     EXPECT_NEAR(static_cast<double>(mesh.tets.size()) / static_cast<double>(wanted), 1.0, 0.05);
   }
 }

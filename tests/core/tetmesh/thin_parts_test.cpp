@@ -1,5 +1,6 @@
 #include "core/tetmesh/thin_parts.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -66,6 +67,37 @@ TEST(BridgeThinParts, PartsStayApartAcrossAGap) {
   std::vector<std::string> lines;
   const TetMesh mesh = fill(surface, 0.15, lines);
   EXPECT_EQ(test::count_pieces(mesh), 2);
+}
+
+TEST(BridgeThinParts, ALimbThatGrowsOutOfAnotherPartHangsOnIt) {
+  SurfaceMesh surface = test::make_sphere(1, 12, Vec3::Zero());
+  test::append(surface, test::make_box({1.25, 0.01, 0.01}, 1, Vec3(1.75, 0, 0)));
+  for (const double edge : {0.2, 0.25, 0.3}) {
+    std::vector<std::string> lines;
+    const TetMesh mesh = fill(surface, edge, lines);
+    test::expect_good_tets(mesh);
+    EXPECT_EQ(test::count_pieces(mesh), 1) << "edge " << edge;
+  }
+}
+
+TEST(BridgeThinParts, SaysThatTouchingSolidsBecameOne) {
+  SurfaceMesh surface = test::make_box(Vec3::Constant(0.5), 3, Vec3::Constant(0.5));
+  test::append(surface, test::make_box(Vec3::Constant(0.5), 3, Vec3(1.5, 1.5, 0.5)));  // at an edge
+  std::vector<std::string> lines;
+  EXPECT_EQ(test::count_pieces(fill(surface, 0.19, lines)), 1);
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
+    return line.find("2 solids that touch") != std::string::npos;
+  }));
+}
+
+TEST(BridgeThinParts, SaysHowMuchVolumeItAddedAtSharpEdges) {
+  SurfaceMesh corner;  // of a unit cube
+  corner.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+  corner.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  std::vector<std::string> lines;
+  fill(corner, 0.12, lines);
+  ASSERT_FALSE(lines.empty());
+  EXPECT_NE(lines.back().find("% more volume"), std::string::npos) << lines.back();
 }
 
 }  // namespace

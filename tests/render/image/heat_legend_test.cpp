@@ -94,6 +94,21 @@ TEST(HeatLegend, ALabelThatWouldRunIntoTheOneBeforeIsLeftOut) {
   EXPECT_LE(columns, 3);
 }
 
+TEST(HeatLegend, HasLettersWhereItSaysSo) {
+  const HeatLegend words{"Strain, %", {{0.5, "888"}}}, none{"", {}};
+  for (const auto& [width, height] :
+       {std::pair(160, 120), std::pair(159, 120), std::pair(160, 119), std::pair(64, 64)}) {
+    DisplayImage with{width, height, {}};
+    with.pixels.assign(static_cast<std::size_t>(3 * width * height), 200);
+    DisplayImage without = with;
+    draw_heat_legend(words, with);
+    draw_heat_legend(none, without);
+    EXPECT_EQ(with.pixels != without.pixels, has_legend_letters(width, height)) << width << " x " << height;
+  }
+  EXPECT_TRUE(has_legend_letters(160, 120));
+  EXPECT_FALSE(has_legend_letters(1000, 119));
+}
+
 TEST(HeatCode, RunsFromDarkToBrightWithoutTurningBack) {
   const auto brightness = [](float x) { return heat_color(x).dot(Vec3f(0.2126f, 0.7152f, 0.0722f)); };
   float before = -1;

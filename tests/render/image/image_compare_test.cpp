@@ -45,10 +45,5 @@ TEST(Compare, SeesAMovedEdgeAndForgivesNoise) {
   EXPECT_GT(compare(edge, noisy).rmse, 0.07);
 }
 
-TEST(DifferencePicture, AmplifiesEightTimes) {
-  EXPECT_EQ(difference_picture(gray(3, 3, 10), gray(3, 3, 15)).pixels.front(), 40);
-  EXPECT_EQ(difference_picture(gray(3, 3, 10), gray(3, 3, 200)).pixels.front(), 255);
-}
-
 }  // namespace
 }  // namespace softreel

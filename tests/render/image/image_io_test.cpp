@@ -124,6 +124,20 @@ TEST(ReadEnvironment, PutsTheDataOfACroppedExrWhereTheyLie) {
   for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(whole.pixels[k], k == 7 ? Vec3f(1, 3, 5) : Vec3f(0, 0, 0)) << k;
 }
 
+TEST(PictureSize, IsToldByTheHeaderAlone) {
+  using Size = std::pair<int, int>;
+  std::vector<std::uint8_t> hdr = tiny_hdr();
+  hdr.resize(hdr.size() - 8);
+  EXPECT_EQ(picture_size(written("softreel_size.hdr", hdr)), Size(2, 1));
+  EXPECT_EQ(picture_size(written("softreel_size.png", encode_png(some_picture()))), Size(5, 3));
+  Image part{2, 1, {{"R", {1.0f, 2.0f}}, {"G", {3.0f, 4.0f}}, {"B", {5.0f, 6.0f}}}};
+  part.full_width = 4;
+  part.full_height = 3;
+  EXPECT_EQ(picture_size(written("softreel_size.exr", encode_exr(part))), Size(4, 3)) << "of its display window";
+  for (const char* ending : {"exr", "hdr", "png", "tga"})
+    EXPECT_THROW(picture_size(written(std::string("softreel_no_size.") + ending, {'n', 'o'})), Error) << ending;
+}
+
 TEST(ReadEnvironment, RefusesWhatIsNoRadiance) {
   const Image negative{1, 1, {{"R", {-1.0f}}, {"G", {0.0f}}, {"B", {0.0f}}}};
   EXPECT_THROW(read_environment(written("softreel_negative.exr", encode_exr(negative))), Error);

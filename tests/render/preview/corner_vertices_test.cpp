@@ -18,6 +18,7 @@ MotionMesh textured_square() {
 void expect_same_corners(const MotionMesh& mesh, const CornerVertices& corners) {
   ASSERT_EQ(corners.triangles.size(), mesh.triangles.size());
   ASSERT_EQ(corners.vertex_of.size(), corners.coordinate_of.size());
+  ASSERT_EQ(corners.vertex_of.size(), corners.normal_of.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_EQ(corners.vertex_of[static_cast<std::size_t>(corners.triangles[t][k])], mesh.triangles[t][k]);
@@ -40,6 +41,20 @@ TEST(CornerVertices, AreSplitWhereCoordinatesDiffer) {
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_EQ(corners.coordinate_of[static_cast<std::size_t>(corners.triangles[t][k])],
                 mesh.coloring.triangles[t][k]);
+}
+
+TEST(CornerVertices, AreSplitWhereNormalsDiffer) {
+  MotionMesh mesh = hard_cube(1, matte(0.5f));
+  const CornerVertices corners = split_at_seams(mesh), own = split_all_corners(mesh);
+  EXPECT_EQ(corners.vertex_of.size(), 24U) << "eight vertices of three sides each";
+  for (const CornerVertices* split : {&corners, &own}) {
+    expect_same_corners(mesh, *split);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (const Index corner : split->triangles[t])
+        EXPECT_EQ(split->normal_of[static_cast<std::size_t>(corner)], static_cast<Index>(t / 2));
+  }
+  mesh.normal_triangles = {};
+  EXPECT_EQ(split_at_seams(mesh).vertex_of.size(), 8U);
 }
 
 TEST(CornerVertices, ATriangleThatLacksOneCoordinateHasNone) {

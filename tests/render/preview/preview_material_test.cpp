@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/pathtrace/sheen.h"
+#include "render/pathtrace/materials/sheen.h"
 #include "tests/render/preview/drawn_preview.h"
 #include "tests/render/test_scenes.h"
 

@@ -105,6 +105,29 @@ TEST(EglPreview, IsLitFromTheSideOfTheLight) {
   EXPECT_GT(at(23), at(17) + 30);
 }
 
+TEST(EglPreview, SidesOfACubeWithHardEdgesAreEvenlyLit) {
+  std::string reason;
+  const std::unique_ptr<Preview> preview = egl_preview_or_null(reason);
+  if (preview == nullptr) GTEST_SKIP() << reason;
+  Scene scene = scene_in_sky(0.2f);
+  scene.meshes = {hard_cube(0.5f, matte(0.8f))};
+  scene.suns.resize(1);
+  scene.suns[0].direction = Vec3f(-1, -3, -2).normalized();
+  scene.camera.position = Vec3f(2, 2, 2);
+  scene.camera.target = Vec3f(0, 0, 0);
+  const DisplayImage image = preview->draw(scene, 96, 96, ViewTransform::Raw, 0);
+  const std::array<Vec3f, 3> sides{Vec3f(0.5f, 0, 0), Vec3f(0, 0.5f, 0), Vec3f(0, 0, 0.5f)};
+  std::array<Vec3f, 3> middles;
+  for (std::size_t s = 0; s < 3; ++s) {
+    middles[s] = pixel_of(image, scene.camera, sides[s]);
+    for (const float to : {-0.4f, 0.4f}) {
+      const Vec3f near_edges = sides[s] + to * (Vec3f(1, 1, 1) - 2 * sides[s]);
+      EXPECT_LE((pixel_of(image, scene.camera, near_edges) - middles[s]).cwiseAbs().maxCoeff(), 1) << s;
+    }
+  }
+  for (std::size_t s = 0; s < 3; ++s) EXPECT_GT((middles[s] - middles[(s + 1) % 3]).norm(), 10) << "each by its normal";
+}
+
 TEST(EglPreview, DrawsTheSamePictureTwiceAndNamesItself) {
   std::string reason;
   const std::unique_ptr<Preview> preview = egl_preview_or_null(reason);

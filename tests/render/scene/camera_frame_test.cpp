@@ -28,6 +28,20 @@ TEST(CameraFrame, SeesTheSensorThroughTheFocalLength) {
   EXPECT_FLOAT_EQ(frame.half_height, 9.0f / 50);
 }
 
+TEST(CameraFrame, AWindowOntoThePictureSeesItsPixelsInTheSameDirections) {
+  const CameraFrame whole = camera_frame(Camera{}, 200, 100);
+  for (const PixelWindow& window : {PixelWindow{50, 10, 150, 30}, PixelWindow{-20, -10, 220, 110}}) {
+    const CameraFrame part = seen_through(window, whole, 200, 100);
+    for (const int x : {window.left, window.right})
+      for (const int y : {window.top, window.bottom}) {
+        const Vec3f seen = part.window_point(x == window.left ? -1.0f : 1.0f, y == window.top ? 1.0f : -1.0f);
+        const Vec3f wanted = whole.window_point(static_cast<float>(x) / 100 - 1, 1 - static_cast<float>(y) / 50);
+        EXPECT_LT((seen - wanted).norm(), 1e-6f) << x << ", " << y;
+      }
+  }
+  EXPECT_EQ(seen_through({}, whole, 200, 100).half_width, whole.half_width) << "no window: the picture itself";
+}
+
 TEST(CameraFrame, FocusesOnTheTargetUnlessTold) {
   Camera camera;
   camera.position = Vec3f(0, 0, 4);

@@ -120,6 +120,15 @@ TEST(Batch, RunsOnlyWhatIsMissingAndSaysSo) {
       << "their motion is the same: one job simulates the frame";
 }
 
+TEST(Batch, AJobWithPicturesOfFramesThatItsShotNoLongerHasIsNotUpToDate) {
+  const std::string folder = shot_folder("longer_before");
+  ASSERT_EQ(batch(folder, "shot.toml --output out").status, 0);
+  const std::string shorter = "shot.toml --output out --set shot.frames=[1,2] --json";
+  EXPECT_EQ(report_of(batch(folder, shorter))["jobs"][0]["state"], "done");
+  EXPECT_FALSE(exists(folder + "/out/ball.0003.png"));
+  EXPECT_EQ(report_of(batch(folder, shorter))["jobs"][0]["state"], "up to date");
+}
+
 TEST(Batch, DryRunListsJobsWithMemoryTimeAndWhatIsThereAndWritesNothing) {
   const std::string folder = two_shots("dry_batch");
   ASSERT_EQ(run(fmt::format("cd {} && softreel render shot.toml --output out --quiet", folder)).status, 0);
@@ -157,6 +166,11 @@ TEST(Batch, RefusesBeforeAnythingRuns) {
   refused("shot.toml --set material.soft.density=5 --sweep body.tets=700,-8",
           {"softreel: --sweep: body.ball.tets = -8"});
   refused("shot.toml --set body.tets=900 --sweep body.tets=700,800", {"--set"});
+  refused("shot.toml --set body.ball.tets=900 --sweep body.tets=700,800", {"body.tets is also given by --set"});
+  refused("shot.toml --sweep body.tets=700,800 --sweep body.ball.tets=900,950",
+          {"body.tets and body.ball.tets are one field"});
+  refused("shot.toml --sweep solver.threads=1,2", {"solver.threads", "--threads"});
+  refused("shot.toml --sweep output.directory=a,b", {"output.directory", "--output"});
   refused("shot.toml --memory nan", {"--memory"});
   refused("shot.toml --jobs 0", {"--jobs"});
 }

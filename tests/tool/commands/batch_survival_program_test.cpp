@@ -106,20 +106,24 @@ TEST_F(BatchSurvival, ACrashedJobIsTriedAgainAsOftenAsAsked) {
     EXPECT_TRUE(read_text(folder_ + "/out/" + name) == bytes) << name;
 }
 
-TEST_F(BatchSurvival, CtrlCEndsAllJobsAndKeepsTheirFrames) {
-  RunningProgram program("batch", command("--jobs 1"));
-  const pid_t child = wait_for_frame(program, "shot.toml", "ball.0002.png");
-  ASSERT_NE(child, 0);
-  program.signal(SIGINT);
-  const Outcome outcome = program.wait();
-  EXPECT_EQ(outcome.status, 130) << outcome.err;
-  EXPECT_NE(::kill(child, 0), 0) << "a job outlives the batch";
-  EXPECT_TRUE(exists(folder_ + "/out/ball.0001.png"));
-  const json report = json::parse(read_text(folder_ + "/out/batch.json"));
-  EXPECT_TRUE(report["interrupted"].get<bool>());
-  EXPECT_EQ(report["jobs"][0]["state"], "interrupted");
-  EXPECT_EQ(report["jobs"][1]["state"], "not started");
-  EXPECT_NE(read_text(folder_ + "/out/batch.junit.xml").find("<skipped/>"), std::string::npos);
+TEST_F(BatchSurvival, CtrlCOrAClosedTerminalEndsAllJobsAndKeepsTheirFrames) {
+  for (const int signal : {SIGINT, SIGHUP}) {
+    SCOPED_TRACE(signal);
+    std::filesystem::remove_all(folder_ + "/out");
+    RunningProgram program("batch", command("--jobs 1"));
+    const pid_t child = wait_for_frame(program, "shot.toml", "ball.0002.png");
+    ASSERT_NE(child, 0);
+    program.signal(signal);
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.status, 130) << outcome.err;
+    EXPECT_NE(::kill(child, 0), 0) << "a job outlives the batch";
+    EXPECT_TRUE(exists(folder_ + "/out/ball.0001.png"));
+    const json report = json::parse(read_text(folder_ + "/out/batch.json"));
+    EXPECT_TRUE(report["interrupted"].get<bool>());
+    EXPECT_EQ(report["jobs"][0]["state"], "interrupted");
+    EXPECT_EQ(report["jobs"][1]["state"], "not started");
+    EXPECT_NE(read_text(folder_ + "/out/batch.junit.xml").find("<skipped/>"), std::string::npos);
+  }
 }
 
 TEST_F(BatchSurvival, ABatchThatIsKilledTakesItsJobsWithIt) {

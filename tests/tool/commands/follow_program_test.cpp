@@ -1,4 +1,5 @@
 /// Constraints from the scene through the built program: animated nodes and surfaces, point caches, weights, grabbing.
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -123,6 +124,29 @@ TEST_F(Follow, AnotherFileContentIsAnotherSimulationFromWhereItDiffers) {
   EXPECT_EQ(simulate()["computed"], 3) << "all but the first frame, at rest";
   const Outcome status = run(fmt::format("softreel status {0}/shot.toml --output {0}/out", folder_));
   EXPECT_EQ(status.status, 0) << status.err;
+}
+
+TEST_F(Follow, StatusNamesASceneOfWhichOnlyTheBufferChanged) {
+  start("buffer", pin_on_top("file = \"jaw.gltf\", node = \"jaw\""));
+  const auto softreel = [&](const std::string& command) {
+    const Outcome outcome = run(
+        fmt::format("softreel {1} {0}/shot.toml --output {0}/out --set render.width=32 --set render.height=18 --set "
+                    "render.samples=1",
+                    folder_, command));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  softreel("render --quiet");
+  std::string buffer = read_text(folder_ + "/jaw.bin");
+  const std::array<float, 4> turn{0.5f, 0, 0, 0.8660254f};
+  std::memcpy(buffer.data() + buffer.size() - sizeof turn, turn.data(), sizeof turn);
+  write_text(folder_ + "/jaw.bin", buffer);
+  const json status = json::parse(softreel("status --json"));
+  std::string because;
+  for (const json& stage : status["stages"])
+    if (stage["stage"] == "pictures") because = stage["because"].dump();
+  EXPECT_NE(because.find("content of "), std::string::npos) << because;
+  EXPECT_NE(because.find("jaw.gltf"), std::string::npos) << because;
 }
 
 TEST_F(Follow, ASkinnedMeshTakesAPinnedPointAlong) {

@@ -163,6 +163,10 @@ TEST_P(Interrupt, ByTerminationEndsSoonAndLeavesNothing) {
   expect_gone(SIGTERM, milliseconds(100));
 }
 
+TEST_P(Interrupt, ByAClosedTerminalEndsSoonAndLeavesNothing) {
+  expect_gone(SIGHUP, milliseconds(100));
+}
+
 /// Reading a large file holds the lock on its result, and no signal is looked at meanwhile.
 using InterruptTwice = Interrupt;
 
@@ -185,6 +189,22 @@ TEST_P(InterruptTwice, EndsAtOnceAndLeavesNoLockAndNoMarkOfARun) {
   EXPECT_EQ(program.wait().status, 130);
   EXPECT_FALSE(has("/locks/"));
   EXPECT_FALSE(has(".running"));
+}
+
+/// As under nohup, or in the background of a shell.
+TEST(InterruptIgnored, BySignalsThatTheProgramWasStartedToIgnoreStopsNothing) {
+  const std::string folder = shot_folder("interrupt_ignored");
+  RunningProgram program("interrupt_ignored",
+                         {"sh", "-c",
+                          fmt::format("trap '' HUP INT; exec '{0}' render {1}/shot.toml --output {1}/out --quiet --set "
+                                      "'shot.frames=[1,20]' --set render.samples=16",
+                                      SOFTREEL_PROGRAM, folder)});
+  wait_until(program, [&] { return exists(folder + "/out/ball.0001.png"); });
+  EXPECT_FALSE(program.has_ended()) << "the signals come too late to test anything";
+  for (const int signal : {SIGHUP, SIGINT}) program.signal(signal);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(exists(folder + "/out/ball.0020.png"));
 }
 
 TEST(InterruptNew, SaysThatNothingIsKept) {

@@ -116,6 +116,17 @@ TEST(NewShots, AreNotWrittenOverThoseThatAreThere) {
   EXPECT_NE(read_text(folder + "/sphere.toml").find("[body.sphere]"), std::string::npos);
 }
 
+TEST(NewShots, WrittenBehindALinkFindTheirMesh) {
+  const std::string folder = new_folder("new_link");
+  write_text(folder + "/sphere.obj", sphere_obj(6));
+  std::filesystem::create_directories(folder + "/far/deep");
+  std::filesystem::create_directory_symlink("far/deep", folder + "/link");
+  const Outcome made = run(fmt::format("cd {}; softreel new sphere.obj --tets 300 -o link/sphere.toml", folder));
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Outcome checked = run(fmt::format("softreel check {}/link/sphere.toml", folder));
+  EXPECT_EQ(checked.status, 0) << checked.err;
+}
+
 TEST(NewShots, TakeAMaterialAndTheLookOfAPreset) {
   const std::string folder = new_folder("new_like");
   write_text(folder + "/sphere.obj", sphere_obj(8));
@@ -136,6 +147,21 @@ TEST(NewShots, TakeAMaterialAndTheLookOfAPreset) {
   EXPECT_NE(unknown.err.find("Did you mean jelly?"), std::string::npos) << unknown.err;
   EXPECT_EQ(run(start + "--like nothing").status, 2);
   EXPECT_EQ(run(start + "--pin soles").status, 2) << "the mesh has no such group";
+}
+
+TEST(NewShots, SayThatEdgesAreHardWhereTheMeshHasSuch) {
+  const std::string folder = new_folder("new_hard");
+  write_text(folder + "/cube.obj",
+             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+             "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  write_text(folder + "/sphere.obj", sphere_obj(12));
+  for (const char* name : {"cube", "sphere"}) {
+    const Outcome made = run(fmt::format("cd {}; softreel new {}.obj -o - --tets 300", folder, name));
+    ASSERT_EQ(made.status, 0) << made.err;
+    const bool hard = std::string(name) == "cube";
+    EXPECT_EQ(made.out.find("\ncrease_deg = 40") != std::string::npos, hard) << made.out;
+    EXPECT_EQ(made.out.find("edges sharper than this") != std::string::npos, hard) << made.out;
+  }
 }
 
 TEST(NewShots, OfWhatEnclosesNoVolumeAreRefused) {

@@ -76,6 +76,16 @@ TEST_F(ReadOnly, CacheStopsNoExport) {
   expect_equal_final_files(folder_ + "/exported", folder_ + "/out");
 }
 
+TEST_F(ReadOnly, CacheThatCannotBeCleanedIsSaid) {
+  render_in_peace(folder_, folder_ + "/first", fmt::format("--cache {}/cache --frames 1-2", folder_), "simulate");
+  const auto stored = files_under(folder_ + "/cache");
+  const Outcome outcome = run_in("cache", "clean", "first", "--all");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_NE(outcome.err.find(folder_ + "/cache/2/"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("Read-only file system"), std::string::npos) << outcome.err;
+  EXPECT_EQ(files_under(folder_ + "/cache"), stored);
+}
+
 TEST_F(ReadOnly, CacheStopsASimulationWhichMakesNothingElse) {
   const Outcome outcome = run_in("cache", "simulate", "out", "--quiet");
   EXPECT_EQ(outcome.status, 1);

@@ -104,7 +104,7 @@ TEST(Render, AnInterruptedRunKeepsItsFramesAndTheNextOneEndsEqual) {
   const std::string folder = shot_folder("interrupt");
   const std::string more = "--set shot.frames='[1,40]' --set render.samples=16";
   render(folder, folder + "/whole", more);
-  for (const char* signal : {"INT", "KILL"}) {
+  for (const char* signal : {"TERM", "KILL"}) {
     const std::string output = folder + "/out" + signal;
     // Waits for the third picture, so that the signal comes in the middle of the work.
     const Outcome outcome =
@@ -112,7 +112,7 @@ TEST(Render, AnInterruptedRunKeepsItsFramesAndTheNextOneEndsEqual) {
                         "while [ ! -e {2}/ball.0003.png ] && kill -0 $pid 2>/dev/null; do sleep 0.01; done; "
                         "kill -{4} $pid; wait $pid",
                         SOFTREEL_PROGRAM, folder, output, more, signal));
-    EXPECT_EQ(outcome.status, std::string(signal) == "INT" ? 130 : 137) << outcome.err;
+    EXPECT_EQ(outcome.status, std::string(signal) == "TERM" ? 130 : 137) << outcome.err;
     EXPECT_FALSE(exists(output + "/ball.0040.png")) << "the signal came too late to test anything";
     for (int frame = 1; frame <= 40; ++frame) {
       const std::string name = fmt::format("/ball.{:04}.png", frame);
@@ -152,6 +152,29 @@ TEST(Render, EncodesAMovieOfFramesBeforeZeroAndOfOddNames) {
       "ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames -of csv=p=0 {}/ball.mp4",
       output));
   EXPECT_EQ(probe.out, "4\n") << probe.err;
+}
+
+TEST(Render, EncodesAMovieWhateverFfmpegTakesItsPathFor) {
+  const std::string folder = shot_folder("addresses");
+  for (const auto& [output, name] :
+       {std::pair{"-dash", "ball"}, {"a:b", "ball"}, {"http:x", "ball"}, {"a%d", "ball"}, {"out", "s%03d"}}) {
+    const Outcome made =
+        run(fmt::format("cd {}; softreel render shot.toml '--output={}' --set shot.name={} --frames 1-4 --quiet --set "
+                        "output.movie=true",
+                        folder, output, name));
+    EXPECT_EQ(made.status, 0) << made.err;
+    EXPECT_TRUE(exists(fmt::format("{}/{}/{}.mp4", folder, output, name)));
+  }
+}
+
+TEST(Render, RefusesALineBreakInThePathOfAMovieBeforeTheWork) {
+  const std::string folder = shot_folder("line_break"), output = folder + "/a\nb";
+  const std::string command = fmt::format("softreel render {}/shot.toml --output '{}' --quiet ", folder, output);
+  const Outcome refused = run(command + "--set output.movie=true");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("line break"), std::string::npos) << refused.err;
+  EXPECT_FALSE(exists(output));
+  EXPECT_EQ(run(command + "--frames 1").status, 0);
 }
 
 TEST(Render, PrerollIsSimulatedButNotRendered) {

@@ -179,6 +179,22 @@ TEST_F(Skipping, TheLookOfAMaterialTouchesNoSimulationAndItsPhysicsDoes) {
   EXPECT_EQ(physics.computed, 4);
 }
 
+TEST_F(Skipping, HardEdgesAreTracedAndNotSimulatedWhereTheMeshHasAny) {
+  start("creases");
+  run_shot();
+  const Work smooth = run_shot("--set body.ball.crease_deg=60");
+  EXPECT_EQ(smooth.traced, 0) << "no edge of the ball is as sharp as that: the pictures are those that are there";
+  EXPECT_EQ(smooth.linked + smooth.developed, 4);
+  const std::string round = picture(2);
+  const Work hard = run_shot("--set body.ball.crease_deg=5");
+  EXPECT_FALSE(hard.filled);
+  EXPECT_EQ(hard.computed, 0);
+  EXPECT_EQ(hard.traced, 4);
+  EXPECT_NE(picture(2), round);
+  EXPECT_EQ(run_shot("--set body.ball.crease_deg=180").recalled, 4) << "which is the default";
+  EXPECT_EQ(picture(2), round);
+}
+
 TEST_F(Skipping, ViewAndExposureDevelopThePicturesAgainWithoutTracing) {
   start("exposure");
   run_shot();

@@ -1,4 +1,5 @@
 // Looks in USDA, and what formats leave out of looks.
+#include <filesystem>
 #include <limits>
 
 #include "tests/tool/export/format_runs.h"
@@ -81,6 +82,24 @@ TEST(UsdaLook, TexturesAreFoundFromTheFileByItsCoordinates) {
   EXPECT_EQ(look.child("placed").property("inputs:scale").value.floats(), std::vector<float>({2, 3}));
   EXPECT_EQ(look.child("placed").property("inputs:translation").value.floats(), std::vector<float>({0.25F, 0.5F}));
   EXPECT_EQ(look.child("coordinates").property("inputs:varname").value.text, "st");
+}
+
+TEST(UsdaLook, ATextureAboveALinkIsToldWhereItIs) {
+  namespace fs = std::filesystem;
+  const testing::TemporaryFolder folder;
+  fs::create_directories(folder.path("far/deep"));
+  folder.write("far/color.png", "\x89PNG\r\n\x1a\n");
+  fs::create_directory_symlink("far/deep", folder.path("link"));
+  TextureSettings textures;
+  textures.base_color = folder.path("link/../color.png");
+  const SurfaceMesh mesh = testing::patchwork();
+  testing::FormatRun run("usda");
+  run.target().folder = folder.path("");
+  run.add_body("cloth", mesh);
+  run.target().bodies[0].textures = textures;
+  run.append(1, mesh.positions);
+  const auto stage = testing::read_usda(run.finish());
+  EXPECT_EQ(stage->child("shot/Looks/cloth/base_color").property("inputs:file").value.text, "./far/color.png");
 }
 
 TEST(UsdaLook, ColoursOfVerticesAreAPrimvarThatTheSurfaceReads) {

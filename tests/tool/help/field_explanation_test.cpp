@@ -42,6 +42,12 @@ TEST_F(FieldExplanations, FindTheFieldByEveryNameThatAShotMayUse) {
   EXPECT_EQ(explain("max_bounces").text.path, "render.max_bounces");
 }
 
+TEST_F(FieldExplanations, SayAllThatActsOnABodyWhichStartsInBalance) {
+  const std::string sentence = explain("shot.start").text.sentence;
+  for (const char* what : {"gravity", "pins", "pulls", "glue"})
+    EXPECT_NE(sentence.find(what), std::string::npos) << what << "\n" << sentence;
+}
+
 TEST_F(FieldExplanations, NameTheNearestOfAnUnknownField) {
   EXPECT_NE(failure("render.sampels").find("render.samples"), std::string::npos) << failure("render.sampels");
   EXPECT_NE(failure("max_bounce").find("max_bounces"), std::string::npos) << failure("max_bounce");

@@ -92,6 +92,7 @@ edge = 0.03
 mode = "embedded"
 thickness = 0.02
 rotation = "paper"
+crease_deg = 40
 
 [[body.second_by_name.region]]
 select = [

@@ -1,5 +1,6 @@
 #include "tool/shot/shot_load.h"
 
+#include <filesystem>
 #include <numbers>
 
 #include "tests/tool/shot/shot_files.h"
@@ -58,6 +59,20 @@ TEST_F(LoadShot, ResolvesPathsAgainstTheFileThatSaysThem) {
   EXPECT_EQ(shot.environment_image, "shots/sky.exr");
   EXPECT_EQ(to_string(shot.environment_origin), "shots/deep/s.toml:4:9");
   EXPECT_EQ(load(kFullShot).bodies[1].mesh, "/meshes/a.ply");
+}
+
+TEST_F(LoadShot, FollowsALinkBeforeTheFolderAboveIt) {
+  namespace fs = std::filesystem;
+  write("far/deep/here.txt", "");
+  write("far/look.toml", "[render]\nwidth = 10\n");
+  write("look.toml", "[render]\nwidth = 20\n");
+  fs::create_directory_symlink("far/deep", "link");
+  const Shot shot = load("use = [\"link/../look.toml\"]\n" + body("[environment]\nimage = \"link/../sky.exr\""),
+                         {"body.mesh=link/../b.ply"});
+  EXPECT_EQ(shot.render.params.width, 10);
+  EXPECT_EQ(shot.environment_image, fs::canonical("far").string() + "/sky.exr");
+  EXPECT_EQ(shot.bodies[0].mesh, fs::canonical("far").string() + "/b.ply");
+  EXPECT_EQ(load(body("[environment]\nimage = \"link/sky.exr\"")).environment_image, "link/sky.exr");
 }
 
 TEST_F(LoadShot, TakesTheSizeOfTetrahedraInOneOfFourWays) {
@@ -157,6 +172,14 @@ TEST_F(LoadShot, MakesSunsOfUnitDirection) {
   EXPECT_NEAR(lights_at(shot, 1).suns[0].direction.norm(), 1, 1e-6);
   EXPECT_TRUE(lights_at(shot, 1).suns[0].irradiance.isApprox(Vec3f(2, 1.8f, 1.6f)));
   EXPECT_NEAR(lights_at(shot, 1).suns[0].angular_diameter, 2 * std::numbers::pi / 180, 1e-7);
+}
+
+TEST_F(LoadShot, BodiesAreSmoothUnlessTheySayOtherwise) {
+  for (const char* lines : {"", "crease_deg = 180"}) EXPECT_FALSE(load(body(lines)).bodies[0].has_creases()) << lines;
+  const Shot shot = load(kFullShot);
+  EXPECT_EQ(shot.bodies[0].crease_deg, 40);
+  EXPECT_TRUE(shot.bodies[0].has_creases());
+  EXPECT_NE(message(body("crease_deg = 0")).find("above 0"), std::string::npos);
 }
 
 TEST_F(LoadShot, TakesWholeNumbersWhereANumberIsWantedAndBack) {

@@ -26,6 +26,7 @@ TEST_F(ShotRanges, EndWhereTheReferenceSays) {
       {"body.edge", positive, above_zero},
       {"body.error", {"1e-300", "1e300", "\"50%\""}, {"0", "-1", "\"50.1%\"", "\"0%\""}},
       {"body.thickness", positive, above_zero},
+      {"body.crease_deg", {"1e-3", "180"}, {"0", "-1", "180.1"}},
       {"body.tets", {"1", "500000000"}, {"0", "500000001", "9223372036854775807", "1e19"}},
       {"body.region[0].stiffness", positive, above_zero},
       {"body.pull[0].stiffness", not_negative, negative},

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tool/cache/base64.h"
 #include "tool/report/golden_page.h"
-#include "tool/stages/base64.h"
 #include "tool/stages/sheet_stage.h"
 
 namespace softreel {

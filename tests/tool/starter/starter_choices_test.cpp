@@ -58,6 +58,26 @@ class StarterChoices : public ShotFiles {
     for (int i = 0; i < n; ++i) text += fmt::format("f 1 {1} {0}\nf 2 {0} {1}\n", i + 3, (i + 1) % n + 3);
     return text;
   }
+  /// A ball with edges of all angles, as of a coarse scan.
+  static std::string rough_ball() {
+    constexpr int rows = 8, columns = 16, last = 2 + (rows - 1) * columns;
+    std::string text = "v 0 0 0.5\n";
+    for (int k = 1; k < last - 1; ++k) {
+      const double polar = M_PI * (1 + (k - 1) / columns) / rows, turn = 2 * M_PI * ((k - 1) % columns) / columns;
+      const double r = 0.5 * (1 + 0.04 * std::sin(2.4 * k));
+      text += fmt::format("v {} {} {}\n", r * std::sin(polar) * std::cos(turn), r * std::sin(polar) * std::sin(turn),
+                          r * std::cos(polar));
+    }
+    text += "v 0 0 -0.5\n";
+    for (int j = 0; j < columns; ++j) {
+      const int next = (j + 1) % columns, low = last - columns;
+      text += fmt::format("f 1 {} {}\nf {} {} {}\n", 2 + j, 2 + next, last, low + next, low + j);
+      for (int first = 2; first < low; first += columns)
+        text += fmt::format("f {0} {1} {2}\nf {0} {2} {3}\n", first + j, first + columns + j, first + columns + next,
+                            first + next);
+    }
+    return text;
+  }
 };
 
 TEST_F(StarterChoices, SomethingTallStandsOnItsBaseAndIsAMetreHigh) {
@@ -124,6 +144,26 @@ TEST_F(StarterChoices, AFlatBaseBelowZSaysThatZPointsUp) {
   StarterWishes wish = few();
   wish.up = "x";
   EXPECT_EQ(choose("printed.obj", wish).settings.up, UpAxis::X);
+}
+
+TEST_F(StarterChoices, EdgesAreHardWhereFlatOrRoundPartsMeet) {
+  write("cube.obj", box(1, 1, 1));
+  EXPECT_EQ(choose("cube.obj").settings.crease_deg, 40);
+  write("bar.obj", box(1, 0.8, 10));
+  EXPECT_EQ(choose("bar.obj").settings.crease_deg, 40);
+  write("cone.obj", cone(0.4, 1));
+  EXPECT_EQ(choose("cone.obj").settings.crease_deg, 40) << "round, on a flat base";
+  StarterWishes wishes = few();
+  wishes.tets = 4000;
+  for (const char* name : {"octopus", "creature"}) {
+    const std::string mesh = fmt::format("{}/assets/{}.ply", SOFTREEL_SOURCE_DIR, name);
+    EXPECT_EQ(choose(mesh, wishes).settings.crease_deg, 180) << name;
+  }
+}
+
+TEST_F(StarterChoices, WhatIsRoughAllOverIsSmooth) {
+  write("rough.obj", rough_ball());
+  EXPECT_EQ(choose("rough.obj").settings.crease_deg, 180) << "a tenth of its edges is sharp, more are nearly so";
 }
 
 TEST_F(StarterChoices, GroupsThatTellAreHeldAndPulled) {

@@ -33,6 +33,24 @@ TEST(ImportMesh, SaysWhatIsWrongWithAFileOfNoMesh) {
   EXPECT_NE(message(folder.write("c.obj", "v 0 0 0\nv 1 0 0\n")).find("2 vertices but no face"), std::string::npos);
 }
 
+TEST(ImportMesh, TakesTextBehindAByteOrderMarkAndRefusesUtf16) {
+  const std::string corners = "0 0 0\n1 0 0\n0 1 0\n";
+  const std::pair<const char*, std::string> files[] = {
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+      {"a.off", "OFF\n3 1 0\n" + corners + "3 0 1 2\n"},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+       "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+           corners + "3 0 1 2\n"},
+      {"a.stl", "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n"}};
+  for (const auto& [name, text] : files) {
+    EXPECT_EQ(import_text(name, "\xef\xbb\xbf" + text).positions, import_text(name, text).positions) << name;
+    std::string wide = "\xff\xfe";
+    for (const char c : text) wide += {c, '\0'};
+    EXPECT_NE(import_error(name, wide).find(std::string(name) + ": its text is UTF-16"), std::string::npos) << name;
+  }
+}
+
 TEST(ImportMesh, LeavesOutFacesOfVerticesThatAreNotFiniteButKeepsTheirPlace) {
   const testing::TemporaryFolder folder;
   testing::Warnings warnings;

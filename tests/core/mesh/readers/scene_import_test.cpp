@@ -18,6 +18,11 @@ using testing::TemporaryFolder;
 /// What a file of single numbers holds of 90 degrees.
 constexpr double kSingle = 1e-6;
 
+/// Where a node is; clip null: at rest.
+Affine place_of(Index node, const SceneAnimation& scene, const SceneClip* clip, double seconds) {
+  return SceneNodes(scene, clip, {node}).at(seconds).back();  // those above it stand before it
+}
+
 TEST(SceneImport, ReadsNodesAndTheirClip) {
   const TemporaryFolder folder;
   const SceneAnimation scene = import_scene(testing::write_jaw(folder.path("")), Log{});
@@ -27,11 +32,11 @@ TEST(SceneImport, ReadsNodesAndTheirClip) {
   ASSERT_EQ(scene.clips.size(), 1u);
   EXPECT_EQ(scene.clips[0].name, "open");
   EXPECT_NEAR(scene.clips[0].seconds, 1, kSingle);
-  EXPECT_EQ(pose_scene(scene, nullptr, 0).nodes[1](Vec3::Zero()), Vec3(0, 1, 0.5));
+  EXPECT_EQ(place_of(1, scene, nullptr, 0)(Vec3::Zero()), Vec3(0, 1, 0.5));
   // A quarter turn about x takes y to z; half of the time is half of the angle.
-  const Affine end = pose_scene(scene, &scene.clips[0], 1).nodes[1];
+  const Affine end = place_of(1, scene, &scene.clips[0], 1);
   EXPECT_LT((end(Vec3(0, 1, 0)) - Vec3(0, 1, 1.5)).norm(), kSingle);
-  const Affine half = pose_scene(scene, &scene.clips[0], 0.5).nodes[1];
+  const Affine half = place_of(1, scene, &scene.clips[0], 0.5);
   const double s = std::numbers::sqrt2 / 2;
   EXPECT_LT((half(Vec3(0, 1, 0)) - Vec3(0, 1 + s, 0.5 + s)).norm(), kSingle);
 }
@@ -39,7 +44,7 @@ TEST(SceneImport, ReadsNodesAndTheirClip) {
 TEST(SceneImport, HoldsTheEndsOfAClip) {
   const TemporaryFolder folder;
   const SceneAnimation scene = import_scene(testing::write_jaw(folder.path("")), Log{});
-  const auto turned = [&](double seconds) { return pose_scene(scene, &scene.clips[0], seconds).nodes[1]; };
+  const auto turned = [&](double seconds) { return place_of(1, scene, &scene.clips[0], seconds); };
   EXPECT_EQ(turned(-3), turned(0));
   EXPECT_EQ(turned(7), turned(1));
 }
@@ -102,7 +107,7 @@ TEST(SceneImport, TwoKeysOfOneTimeAreAStep) {
                 "samplers": [{{ "input": {}, "output": {} }}] }}])",
                                                     times, places));
   const SceneAnimation scene = import_scene(path, Log{});
-  const auto x = [&](double seconds) { return pose_scene(scene, &scene.clips.at(0), seconds).nodes[0].offset.x(); };
+  const auto x = [&](double seconds) { return place_of(0, scene, &scene.clips.at(0), seconds).offset.x(); };
   EXPECT_EQ(x(0.999), 0);
   EXPECT_EQ(x(1), 5) << "the last of them holds from its time on";
   EXPECT_EQ(x(1.001), 5);

@@ -45,18 +45,30 @@ TEST(StlReader, ReadsBinaryThatCallsItselfSolid) {
   EXPECT_EQ(mesh.positions[8], Vec3(0, 1, static_cast<double>(0.1F)));
 }
 
+TEST(StlReader, ReadsTextInCapitalLetters) {
+  const SurfaceMesh mesh = import_text("a.stl",
+                                       "SOLID Left\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\n"
+                                       "VERTEX 0 1E0 0.5\nENDLOOP\nENDFACET\nENDSOLID Left\n");
+  ASSERT_EQ(mesh.positions.size(), 3U);
+  EXPECT_EQ(mesh.positions[2], Vec3(0, 1, 0.5));
+  ASSERT_EQ(mesh.groups.size(), 1U);
+  EXPECT_EQ(mesh.groups[0].name, "Left");
+}
+
 TEST(StlReader, WarnsOfBytesBehindTheTriangles) {
   const testing::TemporaryFolder folder;
-  testing::Warnings warnings;
-  std::string bytes = binary_stl(2, 2) + "more";
-  bytes[0] = 'S';  // not text
-  EXPECT_EQ(import_mesh(folder.write("a.stl", bytes), warnings.log()).triangles.size(), 2U);
-  ASSERT_EQ(warnings.lines.size(), 1U);
-  EXPECT_NE(warnings.lines[0].find("4 bytes"), std::string::npos);
+  for (const char first : {'s', 'b'}) {  // whether the header says "solid" or not
+    testing::Warnings warnings;
+    std::string bytes = binary_stl(2, 2) + "more";
+    bytes[0] = first;
+    EXPECT_EQ(import_mesh(folder.write("a.stl", bytes), warnings.log()).triangles.size(), 2U);
+    ASSERT_EQ(warnings.lines.size(), 1U);
+    EXPECT_NE(warnings.lines[0].find("4 bytes"), std::string::npos);
+  }
 }
 
 TEST(StlReader, RefusesWhatIsCutOff) {
-  EXPECT_FALSE(import_error("a.stl", binary_stl(3, 2)).empty());
+  EXPECT_NE(import_error("a.stl", binary_stl(3, 2)).find("binary file of 234 bytes"), std::string::npos);
   EXPECT_NE(import_error("a.stl", std::string("xyz") + binary_stl(3, 2).substr(3)).find("234"), std::string::npos);
   const std::string text = kTextStl;
   EXPECT_NE(import_error("a.stl", text.substr(0, 80)).find("inside a facet"), std::string::npos);

@@ -28,6 +28,11 @@ const std::string kPly =
 
 TEST(WeightReader, TakesOneNumberALine) {
   EXPECT_EQ(weights_in("a.txt", "# goal\n0\r\n\n 0.25 \n1e0\n"), (std::vector<double>{0, 0.25, 1}));
+  EXPECT_EQ(weights_in("a.txt",
+                       "\xef\xbb\xbf"
+                       "0.5\n1\n"),
+            (std::vector<double>{0.5, 1}))
+      << "a byte order mark";
 }
 
 TEST(WeightReader, TakesAPropertyOfPlyVertices) {

@@ -1,0 +1,116 @@
+#include "core/tetmesh/filling/graded_solid.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/tetmesh/filling/waiting_log.h"
+#include "core/tetmesh/gap_refinement.h"
+#include "core/tetmesh/mesh_pieces.h"
+#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/triangle_tree.h"
+
+namespace softreel {
+namespace {
+
+/// Finer edges gain something where they miss an error by less than this share of what was missed before.
+constexpr double kMuchNearer = 0.9;
+
+/// What graded filling drops. Open parts have crumbs that no size joins: the inside ends anywhere in their holes.
+CrumbLimits graded_crumbs(const Solid& solid) {
+  constexpr Index kCrumbTets = 100;  // about eight cells; base edges and finer ones differ too much to go by the size
+  constexpr double kCrumbShare = 0.01;
+  return solid.has_open_parts() ? CrumbLimits{} : CrumbLimits{kCrumbTets, kCrumbShare};
+}
+
+/// A filling of a solid, and what is amiss with it.
+struct Try {
+  GradedFilling filling;
+  WaitingLog lines;   ///< about it
+  Index loose = 0;    ///< pieces beside the main one of each solid
+  double missed = 0;  ///< of an error that is not kept: width of the widest gap, m; not of fins and rims, which are
+                      ///< open, and which no size brings nearer
+};
+
+/// Pieces are told apart only where there are several; then params get to know what they may be.
+Index count_loose(const Solid& solid, const GradedFilling& filling, ErrorBudgetParams& params) {
+  if (params.triangle_solids.empty()) params.triangle_solids = find_triangle_solids(solid.surface);
+  const std::vector<bool> is_main = find_main_pieces(
+      filling.stuffed, filling.nearest_triangles, face_connected_pieces(filling.stuffed.mesh), params.triangle_solids);
+  return static_cast<Index>(std::count(is_main.begin(), is_main.end(), false));
+}
+
+Try try_filling(const Solid& solid, ErrorBudgetParams& params, const std::string& name, const Threads& threads,
+                const Log& log) {
+  Try made;
+  GradedFilling& filling = made.filling;
+  const Index pieces = made.lines.fill_or_pass_on(log, [&] {
+    filling = fill_graded(solid.surface, params, threads);
+    const std::size_t filled = filling.stuffed.mesh.tets.size();
+    const Index left = drop_crumbs(filling.stuffed, filling.nearest_triangles, solid.parts, graded_crumbs(solid), name,
+                                   made.lines.sink());
+    filling.is_kept = filling.is_kept && filling.stuffed.mesh.tets.size() == filled;
+    return left;
+  });
+  if (pieces > 1 && params.base_edge == 0) made.loose = count_loose(solid, filling, params);
+  if (params.error > 0 && filling.widest_gap && !solid.has_open_parts()) made.missed = width_of(*filling.widest_gap);
+  return made;
+}
+
+/// What falls apart, or lacks a limb, is filled again with finer edges; of what only lacks one the last filling that
+/// gained by them is kept.
+GradedFilling fill_whole(const Solid& solid, ErrorBudgetParams params, const std::string& name, const Threads& threads,
+                         const Log& log) {
+  // Finer edges take more tetrahedra, and a count has no more.
+  const int tries = params.base_edge > 0 ? 1 : params.tets > 0 ? 2 : 3;
+  Try best = try_filling(solid, params, name, threads, log);
+  for (int step = 1; step < tries && (best.loose > 0 || best.missed > params.error); ++step) {
+    ++params.finer;
+    params.loose_share = 1;
+    const bool was_whole = best.loose == 0;
+    if (!was_whole) best = {};  // before there is the next
+    Try next = try_filling(solid, params, name, threads, log);
+    if (was_whole && (next.loose > 0 || !(next.missed < kMuchNearer * best.missed))) break;
+    best = std::move(next);
+  }
+  best.lines.pass_on(log);
+  return std::move(best.filling);
+}
+
+/// ", least" and where the error is missed most; nothing where only what was dropped missed it.
+std::string least_reached(const Solid& solid, const GradedFilling& filling) {
+  if (!filling.widest_gap) return "";
+  const Vec3& p = filling.widest_gap->on_surface;
+  const TriangleTree tree(solid.surface.positions, solid.surface.triangles);
+  const SurfacePart& part = solid.parts.parts[at(solid.parts.triangle_parts[at(tree.nearest(p).triangle)])];
+  return fmt::format(", least {} at ({:.4g}, {:.4g}, {:.4g})", part.name, p[0], p[1], p[2]);
+}
+
+}  // namespace
+
+GradedSolid grade_solid(const Solid& solid, const ErrorBudgetParams& params, const std::string& name,
+                        const Threads& threads, const Log& log, StageTimes& times) {
+  GradedFilling filling = [&] {
+    const ScopedStage stage(times, "tetrahedralize/lattice");
+    return fill_whole(solid, params, name, threads, log);
+  }();
+  StuffedMesh& stuffed = filling.stuffed;
+  stuffed.mesh.lattice.spacing = filling.finest_edge;  // what is too thin is judged by that
+  require_all_parts(stuffed, filling.nearest_triangles, solid.parts, name, log);
+  stuffed.mesh.lattice = {};  // none of one size: the hierarchy finds coarse lattices of its own, and converges better
+  order_nodes(stuffed);
+  if (params.error > 0 && !filling.is_kept) {
+    const ScopedStage stage(times, "tetrahedralize/check");
+    const double reached = measure_deviation(solid.surface, stuffed.mesh, threads).two_way();
+    if (reached > params.error)
+      log.warn(fmt::format(
+          "body '{}': the tetrahedra keep to {:.4g} m of the surface, not to error = {:.4g} m: even edges of {:.4g} m "
+          "do not reach all of it{}. Accepted: this mesh, as it is. Close or thicken what is thin.",
+          name, reached, params.error, filling.finest_edge, least_reached(solid, filling)));
+  }
+  return {std::move(stuffed), filling.finest_edge};
+}
+
+}  // namespace softreel
