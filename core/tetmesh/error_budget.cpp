@@ -122,7 +122,7 @@ int top_level(const Bounds& box, const LatticeFrame& frame, int wanted) {
   constexpr double kMostCells = 1 << 20;
   constexpr int kHighest = 15;  // four such cells are a quarter of the coordinates to one side
   int top = wanted;
-  const auto cells = [&] { return (box.size() / std::ldexp(frame.spacing, top)).array().max(0.0).matrix(); };
+  const auto cells = [&]() -> Vec3 { return (box.size() / std::ldexp(frame.spacing, top)).cwiseMax(0); };
   while (top < kHighest && (cells() + Vec3::Constant(3)).prod() > kMostCells) ++top;
   return top;
 }
