@@ -19,7 +19,9 @@ DisplayImage noise(int width, int height) {
 }
 
 DisplayImage read_back(const std::vector<std::uint8_t>& bytes) {
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / "softreel_strips.png").string();
+  // Of its own for each case: they run beside each other.
+  const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::string path = (std::filesystem::path(::testing::TempDir()) / ("softreel_" + name + ".png")).string();
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return read_png(path);
