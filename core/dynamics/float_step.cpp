@@ -22,7 +22,7 @@ constexpr double kLeastTolerance = 1e-7;
 /// ratio of its inertia; a residual relative to all of the right side does not see that if other rows are far stiffer.
 /// At 8e4 in each row of a stiff core, velocities were as exact as by double precision (6e-4 at a tolerance of 1e-3),
 /// at 8e5 five times less so. Cut bars whose steepest row had 5e4 were wrong by 7e-6 of their motion, at 7e5 by 1.5e-3.
-constexpr double kGreatestRatio = 3e4;
+constexpr double kGreatestRatio = 8e4;
 
 /// Rings of neighbours that the ratio is taken over: a part that could move rigidly is larger than a node. The small
 /// tetrahedra at a surface have ten times the ratio of what they hang on, which decides how they move.
