@@ -58,16 +58,16 @@ RigidityOverMass rigidity_over_mass(const Simulator::Parts& parts) {
     }
   }
   return {sum_over_rings(tets, std::move(stiffness)), sum_over_rings(tets, std::move(damping)),
-          sum_over_rings(tets, parts.masses.mass), sum_over_rings(tets, parts.masses.damping)};
+          sum_over_rings(tets, parts.masses.mass)};
 }
 
-/// Greatest mean diagonal entry of K's share in S over the mass part of S, of all nodes and what is around them. A
-/// rotation does not change it.
+/// Greatest mean diagonal entry of K's share in S over the mass, of all nodes and what is around them; damping of mass,
+/// which would make it less, is left out. A rotation does not change it.
 double greatest_ratio(const RigidityOverMass& ratio, const StepSeconds& seconds) {
   double greatest = 0;
   for (std::size_t i = 0; i < ratio.mass.size(); ++i)
-    greatest = std::max(greatest, seconds.velocity * (seconds.position * ratio.stiffness[i] + ratio.damping[i]) /
-                                      (ratio.mass[i] + seconds.velocity * ratio.mass_damping[i]));
+    greatest = std::max(greatest,
+                        seconds.velocity * (seconds.position * ratio.stiffness[i] + ratio.damping[i]) / ratio.mass[i]);
   return greatest;
 }
 

@@ -45,10 +45,9 @@ struct KnownRest {
 
 /// Diagonal of stiffness and masses around each node, by which float is judged (suits_float): sums over its neighbours.
 struct RigidityOverMass {
-  std::vector<float> stiffness;     ///< N/m
-  std::vector<float> damping;       ///< of strain, Ns/m
-  std::vector<float> mass;          ///< kg
-  std::vector<float> mass_damping;  ///< kg/s
+  std::vector<float> stiffness;  ///< N/m
+  std::vector<float> damping;    ///< of strain, Ns/m
+  std::vector<float> mass;       ///< kg
 };
 
 /// Young's modulus per element, Pa.

@@ -78,9 +78,8 @@ TEST_F(FillingMemory, OfAGradedCountIsBounded) {
     EXPECT_LT(peak_bytes_a_tet({.tets = tets, .graded = true}), 350) << tets << " wanted";
 }
 
-/// Of 190,000 tetrahedra: some 4 MB are taken whatever their number, a sixth of what 75,000 may take.
 TEST_F(FillingMemory, OfAnErrorBudgetIsBounded) {
-  EXPECT_LT(peak_bytes_a_tet({.error = 0.004}), 300);
+  EXPECT_LT(peak_bytes_a_tet({.error = 0.006}), 300);
 }
 
 TEST_F(FillingMemory, OfWholeLatticeTetrahedraIsBounded) {
