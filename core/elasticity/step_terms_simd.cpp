@@ -282,7 +282,11 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
     Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share,
                                           detail::find_least_tension<Lanes>(source, first, stdx::vector_aligned));
     if (!source.turning_velocities.empty() && stdx::any_of(damping > Lanes(0))) {
-      const Matrix turning = detail::gradient<Lanes>(batch, source.turning_velocities, stdx::vector_aligned);
+      Matrix turning = detail::gradient<Lanes>(batch, source.turning_velocities, stdx::vector_aligned);
+      if (!source.turning_change.empty() && !stress.tense) {
+        const Matrix change = detail::gradient<Lanes>(batch, source.turning_change, stdx::vector_aligned);
+        for (std::size_t k = 0; k < 9; ++k) turning[k] += change[k];
+      }
       leave_turning_undamped(batch, find_turning(Q, F, turning), seconds * damping, stress);
     }
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;

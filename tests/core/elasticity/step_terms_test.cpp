@@ -131,11 +131,17 @@ TEST(StepTerms, DampHowFastElementsStretchNotHowTheyTurn) {
   const Moving moving(false, 0.01);
   const std::size_t n = moving.mesh.nodes.size(), elements = moving.mesh.tets.size();
   const std::vector<double> undamped(elements, 0.0);
+  // Of these velocities a part is known, and the rest expected.
+  std::vector<Vec3> known(n), change(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    known[i] = 0.3 * moving.velocities[i];
+    change[i] = 0.7 * moving.velocities[i];
+  }
   const auto forces_of = [&](std::span<const double> damping) {
     StepTerms terms;
     find_step_terms(
         moving.body,
-        {moving.positions, moving.velocities, moving.rotations, {kSeconds, 0}, damping, {}, -1, {}, moving.velocities},
+        {moving.positions, moving.velocities, moving.rotations, {kSeconds, 0}, damping, {}, -1, {}, known, change},
         terms, moving.threads);
     std::vector<Vec3> forces(n);
     gather_step_forces(moving.body, terms, forces, moving.threads);
