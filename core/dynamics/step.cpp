@@ -8,8 +8,7 @@
 /// and the force correction f0 stands beside K, the elastic force is evaluated by itself: it is the same force, but
 /// exact for a capped dilatation and without the cancellation of K x against f0. Beside t r K stands t r G, the
 /// stiffness that tension adds, where leaving it out could make the body flutter (core/elasticity/tension.h): it enters
-/// matrix and right side alike, so at rest nothing changes. How fast elements turn is not damped
-/// (core/elasticity/step_terms.h).
+/// matrix and right side alike, so at rest nothing changes.
 #include <algorithm>
 #include <cmath>
 
@@ -56,10 +55,7 @@ BlockPattern element_pattern(const Simulator::Parts& parts) {
 StepSource find_source(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities) {
   StepSource source{work.positions,          end_velocities, work.rotations,   work.step.seconds,
                     parts.damping_stiffness, work.offsets,   work.kept_change, {}};
-  if (parts.params.rotation == RotationMethod::None) return source;
-  if (parts.damps_strain()) source.turning_velocities = parts.state.velocities;
-  source.turning_change = work.turning_change;
-  if (source.seconds.position == 0) return source;
+  if (parts.params.rotation == RotationMethod::None || source.seconds.position == 0) return source;
   if (parts.tension_limits.empty())
     parts.tension_limits = find_tension_limits(
         parts.body, find_thickness(parts.model.mesh, element_pattern(parts), youngs_moduli(parts.model.materials)),
@@ -170,7 +166,6 @@ void begin_step(Simulator::Parts& parts, StepWork& work, double h) {
     work.step.base_positions[i] = target - work.step.seconds.position * work.velocities[i];
     if (!at_start) work.positions[i] = target;
   }
-  if (!at_start && parts.damps_strain()) work.turning_change = predict_change(parts.params, state, h);
   if (euler_at_start) return;
   work.offsets.resize(parts.nodes());
   for (std::size_t i = 0; i < work.offsets.size(); ++i)

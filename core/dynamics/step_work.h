@@ -25,7 +25,6 @@ struct StepWork {
   ElementTroubles troubles = {};  ///< in: of the step before; find_step_rotations counts this one
   double kept_change = -1;        ///< StepSource::kept_change
   std::vector<GlueBond> bonds = {};
-  std::vector<Vec3> turning_change = {};  ///< StepSource::turning_change
 };
 
 /// t f + M (base velocities) - (M + t C) v - t (K + G) (seconds.position v + offsets) for v = velocities + change and t

@@ -121,18 +121,6 @@ std::vector<Vec3> linearization_positions(const SolverParams& params, const Simu
   return positions;
 }
 
-std::vector<Vec3> predict_change(const SolverParams& params, const SimulationState& state, double h) {
-  const bool is_newmark = params.integrator == Integrator::Newmark;
-  if (!has_memory(params, state) || (is_newmark && state.previous_accelerations.empty())) return {};
-  std::vector<Vec3> change(state.velocities.size());
-  const double gamma = params.newmark.gamma;
-  for (std::size_t i = 0; i < change.size(); ++i)
-    change[i] = is_newmark  // the mean of two accelerations: alone they alternate, see above
-                    ? Vec3(h * ((1 - gamma) * state.previous_accelerations[i] + gamma * state.accelerations[i]))
-                    : Vec3(h / state.previous_seconds * (state.velocities[i] - state.previous_velocities[i]));
-  return change;
-}
-
 Linearize linearization(const SolverParams& params) {
   if (params.linearize != Linearize::Auto) return params.linearize;
   switch (params.integrator) {

@@ -53,9 +53,6 @@ std::vector<Vec3> predict_positions(const SolverParams& params, const Simulation
 /// weight at 24 a second). The line is as good, h^2 a away from the end, and at most three times the displacement.
 std::vector<Vec3> linearization_positions(const SolverParams& params, const SimulationState& state, double h);
 
-/// What the velocities would change by in the step if they went on as in the last one, m/s; empty without memory.
-std::vector<Vec3> predict_change(const SolverParams& params, const SimulationState& state, double h);
-
 /// Greatest estimated error of the free nodes' `positions` at the end of a step of h seconds from `state`, m.
 double estimate_error(const SolverParams& params, const SimulationState& state, double h,
                       std::span<const std::uint8_t> held, std::span<const Vec3> positions);

@@ -3,12 +3,7 @@
 ///
 /// Bound: an element reads 120 bytes of rest shape, 48 of rotation, share and places, its nodes from cache, and writes
 /// 64 bytes; about 350 multiplies and adds, 8 to 10 ns in four lanes of AVX2. One under tension that the step must know
-/// of takes 800 more, with 24 divisions and 24 roots, and 48 bytes; one that is damped 170 more.
-///
-/// Damping of stiffness sees the strain rate D = sym(Q^T grad v). With F = Q U, Q^T grad v = W U + U', where W is how
-/// fast Q turns: of a stretched element D holds sym(W U) beside the rate U' of its stretch, and would brake what turns
-/// rigidly, in steps however short. So sym(W U) of velocities that are known before the step is taken off D: of those
-/// expected at its end, to second order, but of taut elements of those at its start.
+/// of takes 800 more, with 24 divisions and 24 roots, and 48 bytes.
 #pragma once
 
 #include <cstdint>
@@ -72,11 +67,6 @@ struct StepSource {
   double kept_change = -1;
   /// Pa s, per lane of the body's batches: find_tension_limits. Empty: no curvatures.
   std::span<const double> tension_limits = {};
-  /// At the step's start, per node, m/s: how elements turn with these velocities is not damped. Empty: all is.
-  std::span<const Vec3> turning_velocities = {};
-  /// What they are expected to change by over the step, m/s: counts for elements without tension that the step must
-  /// know of, as it made taut ones flutter. Empty: zero.
-  std::span<const Vec3> turning_change = {};
 };
 
 /// Fills `terms`; the vector twin of find_stiffness_terms, find_stresses and the product with K.

@@ -55,49 +55,6 @@ struct Stress {
   return detail::symmetric_part(detail::transposed_product(rotation, gradient));
 }
 
-/// a x b for rows of 3x3 matrices.
-[[gnu::always_inline]] inline Vector cross(const Lanes* a, const Lanes* b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-[[gnu::always_inline]] inline Lanes dot(const Lanes* a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/// sym(W A) for the W = [w]x by which Q^T G = W A + a symmetric matrix, A = Q^T F: (tr(A) I - A) w is twice the axial
-/// vector of Q^T G. Zero where the element is inverted, or so flat that its turning is not known well.
-[[gnu::always_inline]] inline Symmetric find_turning(const Matrix& rotation, const Matrix& F, const Matrix& G) {
-  constexpr double kFlat = 1e-3;  // of the cube of the trace; stretched by 20 at constant volume: 0.02
-  const Matrix A = detail::transposed_product(rotation, F), spin = detail::transposed_product(rotation, G);
-  const Lanes trace = A[0] + A[4] + A[8];
-  Matrix B;
-  for (std::size_t k = 0; k < 9; ++k) B[k] = -A[k];
-  for (const std::size_t k : {0, 4, 8}) B[k] += trace;
-  const Vector bc = cross(&B[3], &B[6]), ca = cross(&B[6], &B[0]), ab = cross(&B[0], &B[3]);
-  const Lanes determinant = dot(&B[0], bc);
-  const Vector twice{spin[7] - spin[5], spin[2] - spin[6], spin[3] - spin[1]};
-  const auto known = determinant > Lanes(kFlat) * (trace * trace * trace) && dot(&A[0], cross(&A[3], &A[6])) > Lanes(0);
-  Lanes inverse(0);
-  where(known, inverse) = Lanes(1) / determinant;
-  Vector w;
-  for (std::size_t k = 0; k < 3; ++k) w[k] = inverse * (twice[0] * bc[k] + twice[1] * ca[k] + twice[2] * ab[k]);
-  Matrix WA;
-  for (std::size_t c = 0; c < 3; ++c) {
-    WA[c] = w[1] * A[6 + c] - w[2] * A[3 + c];
-    WA[3 + c] = w[2] * A[c] - w[0] * A[6 + c];
-    WA[6 + c] = w[0] * A[3 + c] - w[1] * A[c];
-  }
-  return detail::symmetric_part(WA);
-}
-
-/// Takes off the stress what its damping of `damping` seconds makes of mere turning.
-[[gnu::always_inline]] inline void leave_turning_undamped(const ElementBatch& batch, const Symmetric& turning,
-                                                          const Lanes& damping, Stress& stress) {
-  const Lanes two_mu = load(batch.mu) + load(batch.mu), mean = stress.slope * detail::trace(turning);
-  for (std::size_t k = 0; k < 6; ++k) stress.value[k] -= damping * (two_mu * turning[k]);
-  for (const std::size_t k : {0, 3, 5}) stress.value[k] -= damping * mean;
-}
-
 /// Lanes where a kappa_k may exceed `least`: by a bound on the sum of two principal strains that is sharp where two of
 /// them are equal. None is below their mean by more than the root of two thirds of the sum of their deviators' squares.
 [[gnu::always_inline]] inline Lanes::mask_type may_be_tense(const Symmetric& e, const Lanes& pressure,
@@ -274,21 +231,13 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
     const ElementBatch& batch = body.batches[b];
     const std::size_t first = kElementLanes * b;
     const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
-    const Lanes damping = detail::find_damping<Lanes>(source, first), share = seconds * (reach + damping);
+    const Lanes share = seconds * (reach + detail::find_damping<Lanes>(source, first));
     const Matrix F = detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned);
     const Matrix G = detail::gradient<Lanes>(batch, source.velocities, stdx::vector_aligned);
     Matrix offset_gradient{};
     if constexpr (kOffsets) offset_gradient = detail::gradient<Lanes>(batch, source.offsets, stdx::vector_aligned);
-    Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share,
-                                          detail::find_least_tension<Lanes>(source, first, stdx::vector_aligned));
-    if (!source.turning_velocities.empty() && stdx::any_of(damping > Lanes(0))) {
-      Matrix turning = detail::gradient<Lanes>(batch, source.turning_velocities, stdx::vector_aligned);
-      if (!source.turning_change.empty() && !stress.tense) {
-        const Matrix change = detail::gradient<Lanes>(batch, source.turning_change, stdx::vector_aligned);
-        for (std::size_t k = 0; k < 9; ++k) turning[k] += change[k];
-      }
-      leave_turning_undamped(batch, find_turning(Q, F, turning), seconds * damping, stress);
-    }
+    const Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share,
+                                                detail::find_least_tension<Lanes>(source, first, stdx::vector_aligned));
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;
     Matrix T = detail::product(Q, stress.value), scaled = Q;
     const std::size_t count = std::min(kElementLanes, elements - first);

@@ -147,16 +147,7 @@ class EulerStepper : public DirectStepper {
 
  private:
   StepSource source(std::span<const Vec3> base, double h) const {
-    const bool turns = params_.rotation != RotationMethod::None;
-    return {rival_.positions,
-            base,
-            rival_.rotations,
-            {h, h},
-            rival_.damping_stiffness,
-            {},
-            -1,
-            tension_limits_,
-            turns ? std::span<const Vec3>(rival_.velocities) : std::span<const Vec3>()};
+    return {rival_.positions, base, rival_.rotations, {h, h}, rival_.damping_stiffness, {}, -1, tension_limits_};
   }
 
   void assemble(const StepConstraints& constraints, double h) {

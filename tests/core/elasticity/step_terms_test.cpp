@@ -121,55 +121,6 @@ TEST(StepTerms, GoOnFromTheirPositionsByTheOffsets) {
   for (std::size_t i = 0; i < n; ++i) EXPECT_LT((forces[i] - expected[i]).norm(), 1e-12 * scale);
 }
 
-/// Polar stretch of F.
-Mat3 stretch_of(const Mat3& F) {
-  const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullV);
-  return svd.matrixV() * svd.singularValues().asDiagonal() * svd.matrixV().transpose();
-}
-
-TEST(StepTerms, DampHowFastElementsStretchNotHowTheyTurn) {
-  const Moving moving(false, 0.01);
-  const std::size_t n = moving.mesh.nodes.size(), elements = moving.mesh.tets.size();
-  const std::vector<double> undamped(elements, 0.0);
-  // Of these velocities a part is known, and the rest expected.
-  std::vector<Vec3> known(n), change(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    known[i] = 0.3 * moving.velocities[i];
-    change[i] = 0.7 * moving.velocities[i];
-  }
-  const auto forces_of = [&](std::span<const double> damping) {
-    StepTerms terms;
-    find_step_terms(
-        moving.body,
-        {moving.positions, moving.velocities, moving.rotations, {kSeconds, 0}, damping, {}, -1, {}, known, change},
-        terms, moving.threads);
-    std::vector<Vec3> forces(n);
-    gather_step_forces(moving.body, terms, forces, moving.threads);
-    return forces;
-  };
-  // t b V Q C : dU/dt, by a difference of the stretches shortly before and after.
-  constexpr double kMoment = 1e-5;
-  std::vector<Mat3> stresses(elements);
-  for (std::size_t e = 0; e < elements; ++e) {
-    const auto gradient = [&](const std::vector<Vec3>& vectors) {
-      return deformation_gradient(moving.body.shapes[e].gradients, nodes_of(moving.body.tets[e], vectors));
-    };
-    const Mat3 F = gradient(moving.positions), rate = gradient(moving.velocities);
-    const Mat3 U = (stretch_of(F + kMoment * rate) - stretch_of(F - kMoment * rate)) / (2 * kMoment);
-    const ElasticLaw& law = moving.body.laws[e];
-    const Mat3 Q = moving.rotations[e].toRotationMatrix();
-    const double slope = law.pressure_slope(corotated_strain(Q, F).trace());
-    stresses[e] = Q * (kSeconds * moving.damping[e] * moving.body.shapes[e].volume *
-                       (2 * law.mu * U + slope * U.trace() * Mat3::Identity()));
-  }
-  std::vector<Vec3> expected(n);
-  gather_forces(moving.body, stresses, expected, moving.threads);
-  const std::vector<Vec3> damped = forces_of(moving.damping), elastic = forces_of(undamped);
-  double scale = 0;
-  for (const Vec3& f : expected) scale = std::max(scale, f.norm());
-  for (std::size_t i = 0; i < n; ++i) EXPECT_LT((damped[i] - elastic[i] - expected[i]).norm(), 1e-6 * scale);
-}
-
 TEST(StepTerms, SumToNoForce) {
   const Moving moving(false, 0.02);
   std::vector<Vec3> forces(moving.mesh.nodes.size());
