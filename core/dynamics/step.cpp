@@ -35,9 +35,9 @@ constexpr double kForceExcess = 0.01;
 /// What is beyond the strength of a pull softens it by their ratio in each solve, and further in the next step.
 constexpr int kMostSolves = 8;
 
-/// Share of the tension harmless by find_tension_limits that is left out: half, as thickness is only estimated; of the
-/// ninth of it that is harmless to BDF2 from its predictor (by the roots of the stiff oscillator's recurrence, 1 / 9
-/// where K governs and 1 / 5 where mass does; Euler from there bears a third).
+/// Share of the tension harmless by find_tension_limits that is left out: half, as thickness is only estimated. From a
+/// predictor half of a ninth, though by linear theory Euler bears a third from there and BDF2 a quarter
+/// (linearization_positions): measured, soft bodies in violent motion keep to it.
 double explicit_share(const SolverParams& params) {
   // Iterated steps that recovery makes one solve linearise at the predictor.
   const bool at_start = params.integrator == Integrator::Euler && linearization(params) == Linearize::Start;
@@ -55,6 +55,7 @@ BlockPattern element_pattern(const Simulator::Parts& parts) {
 StepSource find_source(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities) {
   StepSource source{work.positions,          end_velocities, work.rotations,   work.step.seconds,
                     parts.damping_stiffness, work.offsets,   work.kept_change, {}};
+  source.secant_at_limit = linearization(parts.params) != Linearize::Start;
   if (parts.params.rotation == RotationMethod::None || source.seconds.position == 0) return source;
   if (parts.tension_limits.empty())
     parts.tension_limits = find_tension_limits(
@@ -71,7 +72,9 @@ void assemble_step(Simulator::Parts& parts, StepWork& work) {
   for (std::size_t e = 0; e < shares.size(); ++e)
     shares[e] = seconds.velocity * (seconds.position + parts.damping_stiffness[e]);
   find_stiffness_terms(parts.body, work.positions, work.rotations, shares, Curvature::None, parts.terms, parts.threads);
-  parts.terms.curvatures = find_tension_curvatures(parts.body, find_source(parts, work, {}), parts.threads);
+  const StepSource source = find_source(parts, work, {});
+  take_step_slopes(parts.body, source, parts.terms);
+  parts.terms.curvatures = find_tension_curvatures(parts.body, source, parts.threads);
   parts.assembler().assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
   for (const ActivePull& pull : work.pulls)
     add_pull_stiffness(pull, work.positions, seconds.velocity * seconds.position, parts.matrix);

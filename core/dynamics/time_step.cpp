@@ -50,6 +50,15 @@ TimeStep begin_bdf2(const SimulationState& state, double h) {
   return step;
 }
 
+/// linearization_positions of BDF2.
+std::vector<Vec3> extrapolated_by_bdf2(const SimulationState& state, double h) {
+  std::vector<Vec3> positions = state.positions;
+  const double share = 0.5 * h / state.previous_seconds;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    positions[i] += 0.5 * h * state.velocities[i] + share * (state.positions[i] - state.previous_positions[i]);
+  return positions;
+}
+
 /// v = v0 + h ((1 - gamma) a0 + gamma a), x = x0 + h v0 + h^2 ((1/2 - beta) a0 + beta a), the latter with a by v.
 TimeStep begin_newmark(const NewmarkParams& newmark, const SimulationState& state, double h) {
   const double share = newmark.beta / newmark.gamma;
@@ -111,8 +120,9 @@ std::vector<Vec3> predict_positions(const SolverParams& params, const Simulation
 }
 
 std::vector<Vec3> linearization_positions(const SolverParams& params, const SimulationState& state, double h) {
-  if (params.integrator != Integrator::Newmark || !has_memory(params, state) || state.previous_accelerations.empty())
-    return predict_positions(params, state, h);
+  if (!has_memory(params, state)) return predict_positions(params, state, h);
+  if (params.integrator == Integrator::Bdf2) return extrapolated_by_bdf2(state, h);
+  if (state.previous_accelerations.empty()) return predict_positions(params, state, h);
   const double beta = params.newmark.beta, gamma = params.newmark.gamma, last = state.previous_seconds;
   std::vector<Vec3> positions = state.positions;
   for (std::size_t i = 0; i < positions.size(); ++i)

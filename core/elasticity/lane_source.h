@@ -10,19 +10,19 @@
 
 namespace softreel::detail {
 
-/// Dilatation stress and its slope, as ElasticLaw has them.
+/// Dilatation stress as ElasticLaw has it, and its slope below the limit.
 template <typename Lanes>
 struct Pressure {
   Lanes value, slope;
+  typename Lanes::mask_type at_limit;
 };
 
 template <typename Lanes, typename Flag>
 [[gnu::always_inline]] inline Pressure<Lanes> find_pressure(const ElementBatch& batch, const Lanes& trace,
                                                             Flag aligned) {
   const Lanes lambda(batch.lambda, aligned), limit(batch.pressure_limit, aligned);
-  Pressure<Lanes> pressure{lambda * trace, lambda};
-  where(pressure.value > limit, pressure.slope) = Lanes(0);
-  where(pressure.value > limit, pressure.value) = limit;
+  Pressure<Lanes> pressure{lambda * trace, lambda, lambda * trace > limit};
+  where(pressure.at_limit, pressure.value) = limit;
   return pressure;
 }
 

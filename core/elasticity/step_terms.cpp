@@ -1,6 +1,21 @@
 #include "core/elasticity/step_terms.h"
 
+#include <algorithm>
+
 namespace softreel {
+
+void take_step_slopes(const ElasticBody& body, const StepSource& source, StiffnessTerms& terms) {
+  for (std::size_t e = 0; e < terms.ratios.size(); ++e) {
+    const ElasticLaw& law = body.laws[e];
+    const Mat3 F = deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], source.positions));
+    const double trace = corotated_strain(source.rotations[e].toRotationMatrix(), F).trace();
+    terms.ratios[e] =
+        step_pressure_slope(law, trace, source.secant_at_limit, source.seconds.position, source.damping_stiffness[e]) /
+        law.mu;
+  }
+  const auto same = [&](double ratio) { return ratio == terms.ratios[0]; };
+  terms.uniform_ratio = std::all_of(terms.ratios.begin(), terms.ratios.end(), same);
+}
 
 void find_step_terms(const ElasticBody& body, const StepSource& source, StepTerms& terms, const Threads& threads) {
   const std::span<const ElementBatch> batches = body.batches;

@@ -13,6 +13,7 @@
 #include "core/base/aligned.h"
 #include "core/base/parallel.h"
 #include "core/base/types.h"
+#include "core/elasticity/assembly.h"
 #include "core/elasticity/elastic_body.h"
 
 namespace softreel {
@@ -67,7 +68,25 @@ struct StepSource {
   double kept_change = -1;
   /// Pa s, per lane of the body's batches: find_tension_limits. Empty: no curvatures.
   std::span<const double> tension_limits = {};
+  bool secant_at_limit = false;  ///< step_pressure_slope: the positions are extrapolated
 };
+
+/// Slope of the dilatation stress p that a step of one solve reckons with, Pa; reach = seconds.position, damping = b.
+///
+/// At the limit the tangent is 0: an element that goes back below it within the step meets lambda, of which the matrix
+/// knows nothing. From the step's start Euler bears that. From an extrapolated place soft bodies crumpled wherever they
+/// were stretched to the limit: there elasticity takes the secant p / trace. The energy of a capped p is Huber's
+/// function of the trace, and the parabola of the secant touches it and lies above it everywhere, so the step never
+/// takes energy for less than it is (iteratively reweighted least squares; Holland and Welsch 1977). It holds back how
+/// volumes change by the order of the extrapolation; at the start it would be the first, and lambda itself holds them
+/// so fast that they go on by themselves. Damping has the tangent in any case.
+inline double step_pressure_slope(const ElasticLaw& law, double trace, bool secant, double reach, double damping) {
+  if (!law.at_limit(trace)) return law.lambda;
+  return secant ? law.pressure_limit() / trace * reach / (reach + damping) : 0;
+}
+
+/// Gives terms of find_stiffness_terms, which are the tangent's, the slopes of a step.
+void take_step_slopes(const ElasticBody& body, const StepSource& source, StiffnessTerms& terms);
 
 /// Fills `terms`; the vector twin of find_stiffness_terms, find_stresses and the product with K.
 void find_step_terms(const ElasticBody& body, const StepSource& source, StepTerms& terms, const Threads& threads);

@@ -43,10 +43,10 @@ Lanes load(const double* from) {
 }
 
 /// t sigma + t C : O + s C : D with D = Q^T grad v, O that of the offsets and C : D = 2 mu sym(D) + slope tr(D) I, in
-/// the frame of the rest shape.
+/// the frame of the rest shape; that of O is step_pressure_slope without damping.
 struct Stress {
   Symmetric value;
-  Lanes slope;
+  Lanes slope;         ///< step_pressure_slope
   bool tense = false;  ///< the positions may hold tension above the limit
 };
 
@@ -69,25 +69,30 @@ struct Stress {
   return (factor > Lanes(0) && reached) || pressure > two_mu;
 }
 
-/// kOffsets: there are offsets, whose gradient is `offset_gradient`. least: tension limit, Pa.
+/// kOffsets: there are offsets, whose gradient is `offset_gradient`. elastic: share of s that is not damping.
+/// limit_share: 1 for the secant at the limit of the dilatation stress, 0 for the tangent. least: tension limit, Pa.
 template <bool kOffsets>
 [[gnu::always_inline]] inline Stress find_stress(const ElementBatch& batch, const Matrix& rotation, const Matrix& F,
                                                  const Matrix& velocity_gradient, const Matrix& offset_gradient,
-                                                 const Lanes& seconds, const Lanes& share, const Lanes& least) {
+                                                 const Lanes& seconds, const Lanes& share, const Lanes& elastic,
+                                                 const Lanes& limit_share, const Lanes& least) {
   Symmetric strain = detail::find_elastic_strain(rotation, F);
   const Symmetric D = find_strain(rotation, velocity_gradient);
   const Lanes two_mu = load(batch.mu) + load(batch.mu);
   detail::Pressure<Lanes> pressure = detail::find_pressure(batch, detail::trace(strain), stdx::vector_aligned);
   const bool tense = stdx::any_of(may_be_tense(strain, pressure.value, two_mu, least));
+  Lanes secant = pressure.slope, slope = pressure.slope;
+  where(pressure.at_limit, secant) = limit_share * pressure.value / detail::trace(strain);
+  where(pressure.at_limit, slope) = secant * elastic;
   if constexpr (kOffsets) {
     const Symmetric O = find_strain(rotation, offset_gradient);
     for (std::size_t k = 0; k < 6; ++k) strain[k] += O[k];
-    pressure.value += pressure.slope * detail::trace(O);
+    pressure.value += secant * detail::trace(O);
   }
-  const Lanes mean = seconds * pressure.value + share * (pressure.slope * detail::trace(D));
+  const Lanes mean = seconds * pressure.value + share * (slope * detail::trace(D));
   const auto deviator = [&](std::size_t k) { return two_mu * (seconds * strain[k] + share * D[k]); };
   return {{mean + deviator(0), deviator(1), deviator(2), mean + deviator(3), deviator(4), mean + deviator(5)},
-          pressure.slope,
+          slope,
           tense};
 }
 
@@ -226,17 +231,20 @@ std::int64_t find_slab(const ElasticBody& body, const StepSource& source, float 
   const auto kept = static_cast<float>(source.kept_change * std::abs(source.kept_change));
   bool changed = false;
   StoredCurvatures curvatures(terms.curvatures[slab], begin, kept);
-  const Lanes seconds(source.seconds.velocity), reach(source.seconds.position);
+  const Lanes seconds(source.seconds.velocity), reach(source.seconds.position),
+      limit_share(source.secant_at_limit ? 1.0 : 0.0);
   for (std::size_t b = begin; b < end; ++b) {
     const ElementBatch& batch = body.batches[b];
     const std::size_t first = kElementLanes * b;
     const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
-    const Lanes share = seconds * (reach + detail::find_damping<Lanes>(source, first));
+    const Lanes damped_reach = reach + detail::find_damping<Lanes>(source, first), share = seconds * damped_reach;
+    Lanes elastic = reach / damped_reach;
+    where(damped_reach == Lanes(0), elastic) = Lanes(0);
     const Matrix F = detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned);
     const Matrix G = detail::gradient<Lanes>(batch, source.velocities, stdx::vector_aligned);
     Matrix offset_gradient{};
     if constexpr (kOffsets) offset_gradient = detail::gradient<Lanes>(batch, source.offsets, stdx::vector_aligned);
-    const Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share,
+    const Stress stress = find_stress<kOffsets>(batch, Q, F, G, offset_gradient, seconds, share, elastic, limit_share,
                                                 detail::find_least_tension<Lanes>(source, first, stdx::vector_aligned));
     const Lanes volume = load(batch.volume), mu = load(batch.mu), ratio = stress.slope / mu;
     Matrix T = detail::product(Q, stress.value), scaled = Q;

@@ -19,7 +19,8 @@ constexpr double kSeconds = 0.01;
 /// A deformed body that moves. The lattice has several slabs, and a number of elements that is no multiple of the
 /// lanes.
 struct Moving {
-  Moving(bool one_material, double noise) : threads(4), mesh(testing::bcc_bar({8, 6, 5}, 0.1)) {
+  Moving(bool one_material, double noise, bool with_secant = false)
+      : secant(with_secant), threads(4), mesh(testing::bcc_bar({8, 6, 5}, 0.1)) {
     mesh.tets.pop_back();
     std::vector<ElementMaterial> materials(mesh.tets.size());
     if (!one_material)
@@ -40,10 +41,13 @@ struct Moving {
     for (std::size_t e = 0; e < mesh.tets.size(); ++e) damping.push_back(0.002 * static_cast<double>(e % 5));
   }
 
+  StepSource source() const {
+    return {positions, velocities, rotations, {kSeconds, kSeconds}, damping, {}, -1, {}, secant};
+  }
+
   StepTerms terms(int thread_count) const {
     StepTerms result;
-    find_step_terms(body, {positions, velocities, rotations, {kSeconds, kSeconds}, damping, {}}, result,
-                    Threads(thread_count));
+    find_step_terms(body, source(), result, Threads(thread_count));
     return result;
   }
 
@@ -57,10 +61,12 @@ struct Moving {
     BlockMatrixd result{stiffness_pattern(mesh.tets, static_cast<Index>(mesh.nodes.size())), {}};
     StiffnessTerms stiffness;
     find_stiffness_terms(body, positions, rotations, shares(), Curvature::None, stiffness, threads);
+    take_step_slopes(body, source(), stiffness);
     StiffnessAssembler(mesh.tets, result.pattern).assemble(stiffness, with_node_terms, result, threads);
     return result;
   }
 
+  bool secant;
   Threads threads;
   TetMesh mesh;
   ElasticBody body;
@@ -88,8 +94,8 @@ std::vector<Vec3> expected_forces(const Moving& moving) {
 
 TEST(StepTerms, GiveTheForcesOfTheScalarFunctions) {
   for (const bool one_material : {true, false})
-    for (const double noise : {0.002, 0.05}) {  // the larger takes some elements over the cap
-      const Moving moving(one_material, noise);
+    for (const double noise : {0.002, 0.05, -0.05}) {  // 0.05 takes some elements over the cap
+      const Moving moving(one_material, std::abs(noise), noise < 0);
       const std::vector<Vec3> expected = expected_forces(moving);
       std::vector<Vec3> forces(expected.size());
       gather_step_forces(moving.body, moving.terms(1), forces, moving.threads);
