@@ -167,6 +167,7 @@ void StaticSolver::adjust_terms_to_damping(const StaticState& state, Curvature c
   const StrainDamping& damping = potential_->damping;
   const auto chunk = [&](std::int64_t begin, std::int64_t end) {
     double adjusted = 0;
+    CurvatureBatch batch(curvature == Curvature::PositivePart);
     for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
       const double share = 1 - 1 / shares_[e];
       if (share == 0) continue;
@@ -178,11 +179,11 @@ void StaticSolver::adjust_terms_to_damping(const StaticState& state, Curvature c
       if (terms.curvatures.empty()) continue;
       const Mat3 F =
           deformation_gradient(parts_.body.shapes[e].gradients, nodes_of(parts_.body.tets[e], state.positions));
-      terms.curvatures[e] += damping_curvature(law, damping, e, state.rotations[e].toRotationMatrix(), F,
-                                               curvature == Curvature::PositivePart) /
-                             law.mu;
       terms.curvatures[e] /= shares_[e];
+      add_damping_curvature(law, damping, e, state.rotations[e].toRotationMatrix(), F, 1 / (law.mu * shares_[e]), batch,
+                            terms.curvatures[e]);
     }
+    batch.finish();
     return adjusted;
   };
   const double different = parts_.threads.sum_chunks(static_cast<std::int64_t>(shares_.size()), kElementGrain, chunk);

@@ -93,12 +93,10 @@ DampingEnergy find_damping(const ElasticBody& body, const StrainDamping& damping
   return energy;
 }
 
-Mat3 damping_curvature(const ElasticLaw& law, const StrainDamping& damping, std::size_t element, const Mat3& rotation,
-                       const Mat3& F, bool positive_part) {
+void add_damping_curvature(const ElasticLaw& law, const StrainDamping& damping, std::size_t element,
+                           const Mat3& rotation, const Mat3& F, double factor, CurvatureBatch& batch, Mat3& matrix) {
   const Mat3 strain = find_stretch(rotation, F) - damping.stretches[element];
-  const ElasticLaw damped{damping.slopes[element], law.mu, false};
-  return damping.ratios[element] *
-         rotation_curvature(damped, rotation, rotation * (Mat3::Identity() + strain), positive_part);
+  batch.add({damping.slopes[element], law.mu, false}, rotation, strain, factor * damping.ratios[element], matrix);
 }
 
 }  // namespace softreel

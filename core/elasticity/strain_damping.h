@@ -18,6 +18,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/types.h"
+#include "core/elasticity/curvature_batch.h"
 #include "core/elasticity/elastic_body.h"
 
 namespace softreel {
@@ -46,9 +47,9 @@ std::vector<Mat3> find_stretches(const ElasticBody& body, RotationMethod rotatio
 DampingEnergy find_damping(const ElasticBody& body, const StrainDamping& damping, std::span<const Vec3> positions,
                            std::span<const Quaternion> rotations, std::span<Mat3> stresses, const Threads& threads);
 
-/// What turning adds to the damping's tangent beside stiffness of the share b / r, Pa: b / r times rotation_curvature
-/// as though U - U' were the strain, right to first order in it. rotation: polar one of F.
-Mat3 damping_curvature(const ElasticLaw& law, const StrainDamping& damping, std::size_t element, const Mat3& rotation,
-                       const Mat3& F, bool positive_part);
+/// What turning adds to the damping's tangent beside stiffness of the share b / r: matrix += factor b / r times
+/// rotation_curvature as though U - U' were the strain, right to first order in it. rotation: polar one of F.
+void add_damping_curvature(const ElasticLaw& law, const StrainDamping& damping, std::size_t element,
+                           const Mat3& rotation, const Mat3& F, double factor, CurvatureBatch& batch, Mat3& matrix);
 
 }  // namespace softreel
