@@ -8,7 +8,8 @@
 /// and the force correction f0 stands beside K, the elastic force is evaluated by itself: it is the same force, but
 /// exact for a capped dilatation and without the cancellation of K x against f0. Beside t r K stands t r G, the
 /// stiffness that tension adds, where leaving it out could make the body flutter (core/elasticity/tension.h): it enters
-/// matrix and right side alike, so at rest nothing changes.
+/// matrix and right side alike, so at rest nothing changes. So does the secant where K's dilatation is at its limit, if
+/// x* is extrapolated (step_pressure_slope).
 #include <algorithm>
 #include <cmath>
 
@@ -73,7 +74,7 @@ void assemble_step(Simulator::Parts& parts, StepWork& work) {
     shares[e] = seconds.velocity * (seconds.position + parts.damping_stiffness[e]);
   find_stiffness_terms(parts.body, work.positions, work.rotations, shares, Curvature::None, parts.terms, parts.threads);
   const StepSource source = find_source(parts, work, {});
-  take_step_slopes(parts.body, source, parts.terms);
+  take_step_slopes(parts.body, source, parts.terms, parts.threads);
   parts.terms.curvatures = find_tension_curvatures(parts.body, source, parts.threads);
   parts.assembler().assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
   for (const ActivePull& pull : work.pulls)

@@ -47,18 +47,20 @@ HeldNode find_held_motion(const SolverParams& params, const SimulationState& sta
 /// Where the nodes would be after the step if nothing changed; the error is estimated by it.
 std::vector<Vec3> predict_positions(const SolverParams& params, const SimulationState& state, double h);
 
-/// Where Linearize::Predictor takes rotations and forces: of second order, and no farther than one solve can bear.
+/// Where Linearize::Predictor takes rotations and forces: of second order, and no farther along than one solve bears.
 ///
-/// What the matrix leaves out of the tangent, nu against the omega^2 in it, acts by the displacement from here to the
-/// end. From predict_positions noise of the last steps comes back up to 13 nu / omega^2 times: one solve of BDF2 was
-/// unstable from 0.08 in tension and -0.29 in compression on.
+/// What the matrix leaves out of the tangent, nu beside the omega^2 in it, acts by the displacement from here to the
+/// end: noise of the last steps comes back as nu / omega^2 times what extrapolation makes of it. Limits are by the
+/// roots of the oscillator's recurrence, undamped and for equal steps.
 ///
-/// - BDF2: x + h (v + u) / 2 with u the mean velocity over the last step. By the roots of the oscillator's recurrence
-///   stable from nu / omega^2 = -1 to 1 / 4 where stiffness governs, to 4 / 9 where mass does. More of v narrows that;
-///   with less, oscillations grow of which the matrix has nothing (design 4.4 has what predict_positions says).
+/// - BDF2: x + h (v + u) / 2 with u the mean velocity over the last step, 4 times such noise. Stable from nu = -omega^2
+///   to omega^2 / 4 where stiffness governs, to nu h^2 = 4 where mass does (4 / 9 in the units of tension.h). With any
+///   less of v, oscillations grow of which the matrix has nothing; as it is they keep their size. predict_positions
+///   would make 9 times the noise: stable from -0.4 omega^2 in compression to 1 / 9 in tension.
 /// - Newmark: the line through the last two positions. It does not damp what is too fast for the step: there the
 ///   acceleration alternates and h^2 a / 2 is (omega h)^2 / 2 times the displacement, by which one solve was unstable
-///   at ordinary steps (a bar under its weight at 24 a second). The line is at most three times the displacement.
+///   at ordinary steps (a bar under its weight at 24 a second). The line is at most three times the displacement. Where
+///   a body is stretched and nothing damps it that is too much still: linearization has it iterate.
 /// - Euler, and a first step: predict_positions.
 std::vector<Vec3> linearization_positions(const SolverParams& params, const SimulationState& state, double h);
 

@@ -1,6 +1,5 @@
 #include "core/elasticity/assembly.h"
 
-#include <array>
 #include <cmath>
 #include <limits>
 

@@ -19,7 +19,7 @@ namespace softreel {
 /// block(i, j) = ratio g_i g_j^T + g_j g_i^T + (g_i . g_j) I + [g_i]x curvature [g_j]x^T.
 struct StiffnessTerms {
   AlignedVector<double> gradients;  ///< g_i as x y z 0, so that a row of a block is one vector: elements x 4 x 4
-  std::vector<double> ratios;       ///< slope of the dilatation stress over mu
+  std::vector<double> ratios;       ///< slope of the dilatation stress over mu: the tangent's, or step_pressure_slope
   std::vector<Mat3> curvatures;     ///< rotation_curvature over mu; empty: left out
   /// True if all ratios are equal; then one gather makes both products.
   bool uniform_ratio = false;

@@ -21,6 +21,7 @@ void CurvatureBatch::add(const ElasticLaw& law, const Mat3& rotation, const Mat3
 }
 
 void CurvatureBatch::finish() {
+  if (count_ == 0) return;
   find_lane_curvatures(positive_part_, lanes_);  // of lanes without an element, what they held before
   for (std::size_t lane = 0; lane < count_; ++lane) {
     Mat3& matrix = *matrices_[lane];

@@ -1,20 +1,28 @@
 #include "core/elasticity/step_terms.h"
 
-#include <algorithm>
-
 namespace softreel {
+namespace {
 
-void take_step_slopes(const ElasticBody& body, const StepSource& source, StiffnessTerms& terms) {
-  for (std::size_t e = 0; e < terms.ratios.size(); ++e) {
-    const ElasticLaw& law = body.laws[e];
-    const Mat3 F = deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], source.positions));
-    const double trace = corotated_strain(source.rotations[e].toRotationMatrix(), F).trace();
-    terms.ratios[e] =
-        step_pressure_slope(law, trace, source.secant_at_limit, source.seconds.position, source.damping_stiffness[e]) /
-        law.mu;
-  }
-  const auto same = [&](double ratio) { return ratio == terms.ratios[0]; };
-  terms.uniform_ratio = std::all_of(terms.ratios.begin(), terms.ratios.end(), same);
+constexpr std::int64_t kSlopeGrain = 1024;
+
+}  // namespace
+
+void take_step_slopes(const ElasticBody& body, const StepSource& source, StiffnessTerms& terms,
+                      const Threads& threads) {
+  if (!source.secant_at_limit) return;
+  const auto chunk = [&](std::int64_t begin, std::int64_t end) {
+    double different = 0;
+    for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
+      const ElasticLaw& law = body.laws[e];
+      const Mat3 F = deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], source.positions));
+      const double trace = corotated_strain(source.rotations[e].toRotationMatrix(), F).trace();
+      terms.ratios[e] =
+          step_pressure_slope(law, trace, true, source.seconds.position, source.damping_stiffness[e]) / law.mu;
+      if (terms.ratios[e] != body.laws[0].lambda / body.laws[0].mu) ++different;
+    }
+    return different;
+  };
+  terms.uniform_ratio = threads.sum_chunks(static_cast<std::int64_t>(terms.ratios.size()), kSlopeGrain, chunk) == 0;
 }
 
 void find_step_terms(const ElasticBody& body, const StepSource& source, StepTerms& terms, const Threads& threads) {

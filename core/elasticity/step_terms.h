@@ -23,7 +23,7 @@ inline constexpr std::size_t kCurvatureFloats = 12;
 
 /// Terms of the system of core/dynamics/step.cpp.
 struct StepTerms {
-  /// g_i = sqrt(s V mu) Q b_i as x y z r with r = slope of the dilatation stress over mu: elements x 4 x 4.
+  /// g_i = sqrt(s V mu) Q b_i as x y z r with r = step_pressure_slope over mu: elements x 4 x 4.
   /// Block (i, j) of S gains r g_i g_j^T + g_j g_i^T + (g_i . g_j) I.
   AlignedVector<float> gradients;
   /// C of core/elasticity/tension.h, by whose share block (i, j) gains [g_i]x C [g_j]x^T: per slab, empty where no
@@ -34,7 +34,7 @@ struct StepTerms {
   std::vector<std::uint8_t> changed;
   /// With T = t V Q sigma, t times the derivative of V Q sigma along the offsets and s times that along the velocities:
   /// the forces -T b_i on the nodes, N s, added up by slabs. Derivatives are at fixed rotations, but for the
-  /// curvatures.
+  /// curvatures, and at the limit of the dilatation stress they are what step_pressure_slope says.
   AlignedVector<double> forces;
   /// True if r is the same in all elements.
   bool uniform_ratio = false;
@@ -63,30 +63,33 @@ struct StepSource {
   std::span<const double> damping_stiffness;  ///< b per element, s; its share in S is s = t (seconds.position + b)
   /// The positions at the step's end less those above and seconds.position * velocities, m; empty: zero.
   std::span<const Vec3> offsets;
-  /// Gradients that change by less than this share of themselves, and curvatures that change by less than it, are left
-  /// as they are; negative: none is.
+  /// Gradients that change by less than this share of themselves, r that does of 1 + r, and curvatures that change by
+  /// less than it, are left as they are; negative: none is.
   double kept_change = -1;
   /// Pa s, per lane of the body's batches: find_tension_limits. Empty: no curvatures.
   std::span<const double> tension_limits = {};
-  bool secant_at_limit = false;  ///< step_pressure_slope: the positions are extrapolated
+  bool secant_at_limit = false;  ///< of step_pressure_slope: to be taken where the positions are extrapolated
 };
 
 /// Slope of the dilatation stress p that a step of one solve reckons with, Pa; reach = seconds.position, damping = b.
 ///
 /// At the limit the tangent is 0: an element that goes back below it within the step meets lambda, of which the matrix
-/// knows nothing. From the step's start Euler bears that. From an extrapolated place soft bodies crumpled wherever they
-/// were stretched to the limit: there elasticity takes the secant p / trace. The energy of a capped p is Huber's
+/// knows nothing. From the step's start Euler bears that. From an extrapolated place soft bodies crumple wherever they
+/// are stretched to the limit: there elasticity takes the secant p / trace. The energy of a capped p is Huber's
 /// function of the trace, and the parabola of the secant touches it and lies above it everywhere, so the step never
-/// takes energy for less than it is (iteratively reweighted least squares; Holland and Welsch 1977). It holds back how
-/// volumes change by the order of the extrapolation; at the start it would be the first, and lambda itself holds them
-/// so fast that they go on by themselves. Damping has the tangent in any case.
+/// takes energy for less than it is (iteratively reweighted least squares; Holland and Welsch 1977).
+///
+/// Greater than the tangent, it slows changes of volume by an error of the order of the way from the place of
+/// linearisation to the end: of second order from an extrapolated place, but of first from the start. lambda, the
+/// greatest slope, would leave volumes no force but inertia's: they would go on as they are extrapolated. Damping has
+/// the tangent in any case.
 inline double step_pressure_slope(const ElasticLaw& law, double trace, bool secant, double reach, double damping) {
   if (!law.at_limit(trace)) return law.lambda;
-  return secant ? law.pressure_limit() / trace * reach / (reach + damping) : 0;
+  return secant && reach > 0 ? law.pressure_limit() / trace * reach / (reach + damping) : 0;
 }
 
 /// Gives terms of find_stiffness_terms, which are the tangent's, the slopes of a step.
-void take_step_slopes(const ElasticBody& body, const StepSource& source, StiffnessTerms& terms);
+void take_step_slopes(const ElasticBody& body, const StepSource& source, StiffnessTerms& terms, const Threads& threads);
 
 /// Fills `terms`; the vector twin of find_stiffness_terms, find_stresses and the product with K.
 void find_step_terms(const ElasticBody& body, const StepSource& source, StepTerms& terms, const Threads& threads);

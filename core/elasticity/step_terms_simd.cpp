@@ -43,7 +43,7 @@ Lanes load(const double* from) {
 }
 
 /// t sigma + t C : O + s C : D with D = Q^T grad v, O that of the offsets and C : D = 2 mu sym(D) + slope tr(D) I, in
-/// the frame of the rest shape; that of O is step_pressure_slope without damping.
+/// the frame of the rest shape. O's slope lacks the share of elasticity that step_pressure_slope has.
 struct Stress {
   Symmetric value;
   Lanes slope;         ///< step_pressure_slope
@@ -108,7 +108,7 @@ using NodeVectors = std::array<Vector, 4>;
   return products;
 }
 
-/// True if x y z of the vectors change by more than the root of `kept` of their length, or r by anything.
+/// True if x y z of the vectors change by more than the root of `kept` of their length, or r by that much of 1 + r.
 [[gnu::always_inline]] inline bool changes(const FourRows& from, const FourRows& to, float kept) {
   FourFloats change{}, size{};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -116,7 +116,8 @@ using NodeVectors = std::array<Vector, 4>;
     change += difference * difference;
     size += to.rows[k] * to.rows[k];
   }
-  return !(change[0] + change[1] + change[2] <= kept * (size[0] + size[1] + size[2]) && change[3] == 0);
+  return !(change[0] + change[1] + change[2] <= kept * (size[0] + size[1] + size[2]) &&
+           change[3] <= kept * (4 + size[3]));
 }
 
 /// Replaces the gradients of the batch's elements that change; true if there are any. gradients: of the first of them.

@@ -91,7 +91,17 @@ void study_stretch(const BenchOptions& options, Report& report) {
   report.add(table);
 }
 
-void study_one_solve(const BenchOptions& options, Report& report) {
+namespace {
+
+/// How far bars of some shapes are stretched or compressed in turn, and the table of where they still come to rest.
+struct Reach {
+  const char* table;
+  const char* caption;
+  std::vector<std::array<int, 3>> shapes;  ///< cubes
+  std::vector<double> stretches;           ///< from the mildest
+};
+
+void study_reach(const Reach& reach, Report& report) {
   struct Stepping {
     const char* name;
     Linearize linearize;
@@ -103,16 +113,9 @@ void study_one_solve(const BenchOptions& options, Report& report) {
                                      {"iterated, 24 a second", Linearize::Iterated, 24},
                                      {"BDF2, 24 a second", Linearize::Auto, 24, Integrator::Bdf2},
                                      {"BDF2, 96 a second", Linearize::Auto, 96, Integrator::Bdf2}};
-  Table table{"stability_one_solve",
-              "Largest of the stretches 1.1, 1.25, 1.5, 2, 3, 4, 8, 20 up to which a bar of the default rotation, with "
-              "the cap, comes to rest (0: not even the first)",
-              {"cubes", "E / Pa"},
-              {}};
+  Table table{reach.table, reach.caption, {"cubes", "E / Pa"}, {}};
   for (const Stepping& stepping : kSteppings) table.columns.emplace_back(stepping.name);
-  using Cells = std::array<int, 3>;
-  const std::vector<Cells> shapes =
-      options.quick ? std::vector<Cells>{{8, 2, 2}} : std::vector<Cells>{{8, 4, 4}, {8, 2, 2}, {20, 2, 2}, {40, 2, 2}};
-  for (const Cells& cells : shapes)
+  for (const std::array<int, 3>& cells : reach.shapes)
     for (const double modulus : {1e5, 1e6, 1e7, 1e8}) {
       BarBody bar;
       bar.cells = cells;
@@ -125,7 +128,7 @@ void study_one_solve(const BenchOptions& options, Report& report) {
         Verdict verdict;
         double calm = 0;
         for (const HeldPose& pose :
-             stretch_bar(bar, params, {1.1, 1.25, 1.5, 2, 3, 4, 8, 20}, {stepping.steps_per_second, 4}, verdict)) {
+             stretch_bar(bar, params, reach.stretches, {stepping.steps_per_second, 4}, verdict)) {
           if (pose.flutter > kFlutter) break;
           calm = pose.asked;
         }
@@ -134,6 +137,27 @@ void study_one_solve(const BenchOptions& options, Report& report) {
       table.add(std::move(row));
     }
   report.add(table);
+}
+
+}  // namespace
+
+void study_one_solve(const BenchOptions& options, Report& report) {
+  using Shapes = std::vector<std::array<int, 3>>;
+  const Shapes slender = options.quick ? Shapes{{8, 2, 2}} : Shapes{{8, 4, 4}, {8, 2, 2}, {20, 2, 2}, {40, 2, 2}},
+               stout = options.quick ? Shapes{{4, 4, 4}} : Shapes{{4, 4, 4}, {6, 6, 6}, {4, 8, 8}};
+  study_reach(
+      {"stability_one_solve",
+       "Largest of the stretches 1.1, 1.25, 1.5, 2, 3, 4, 8, 20 up to which a bar of the default rotation, with "
+       "the cap, comes to rest (0: not even the first)",
+       slender,
+       {1.1, 1.25, 1.5, 2, 3, 4, 8, 20}},
+      report);
+  study_reach({"stability_compressed",
+               "The same for blocks that are pressed together: least of the lengths 0.9, 0.8, 0.7, 0.6, 0.5, 0.4 over "
+               "that at rest (0: not even the first)",
+               stout,
+               {0.9, 0.8, 0.7, 0.6, 0.5, 0.4}},
+              report);
 }
 
 void study_twist(const BenchOptions& options, Report& report) {

@@ -8,7 +8,8 @@ namespace softreel::bench {
 /// Flutter at rest over stretch, with and without the cap on the dilatation stress.
 void study_stretch(const BenchOptions& options, Report& report);
 
-/// How far the default's one solve a step goes before a stretched bar flutters: by stiffness, slenderness and step.
+/// How far the default's one solve a step goes before a stretched bar or a compressed block flutters: by stiffness,
+/// slenderness and step.
 void study_one_solve(const BenchOptions& options, Report& report);
 
 /// Turns that are held over turns commanded.

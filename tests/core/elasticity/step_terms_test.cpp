@@ -1,6 +1,7 @@
 // The vector kernels of a time step against the scalar functions that they stand for.
 #include "core/elasticity/step_terms.h"
 
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -61,7 +62,7 @@ struct Moving {
     BlockMatrixd result{stiffness_pattern(mesh.tets, static_cast<Index>(mesh.nodes.size())), {}};
     StiffnessTerms stiffness;
     find_stiffness_terms(body, positions, rotations, shares(), Curvature::None, stiffness, threads);
-    take_step_slopes(body, source(), stiffness);
+    take_step_slopes(body, source(), stiffness, threads);
     StiffnessAssembler(mesh.tets, result.pattern).assemble(stiffness, with_node_terms, result, threads);
     return result;
   }
@@ -92,10 +93,16 @@ std::vector<Vec3> expected_forces(const Moving& moving) {
   return forces;
 }
 
+struct State {
+  double noise;
+  bool secant;
+};
+constexpr State kStates[] = {{0.002, false}, {0.05, false}, {0.05, true}};  // 0.05 takes some elements over the cap
+
 TEST(StepTerms, GiveTheForcesOfTheScalarFunctions) {
   for (const bool one_material : {true, false})
-    for (const double noise : {0.002, 0.05, -0.05}) {  // 0.05 takes some elements over the cap
-      const Moving moving(one_material, std::abs(noise), noise < 0);
+    for (const auto& [noise, secant] : kStates) {
+      const Moving moving(one_material, noise, secant);
       const std::vector<Vec3> expected = expected_forces(moving);
       std::vector<Vec3> forces(expected.size());
       gather_step_forces(moving.body, moving.terms(1), forces, moving.threads);
@@ -105,26 +112,40 @@ TEST(StepTerms, GiveTheForcesOfTheScalarFunctions) {
     }
 }
 
+std::vector<Vec3> forces_with(const Moving& moving, const StepSource& source) {
+  StepTerms terms;
+  find_step_terms(moving.body, source, terms, moving.threads);
+  std::vector<Vec3> forces(moving.mesh.nodes.size());
+  gather_step_forces(moving.body, terms, forces, moving.threads);
+  return forces;
+}
+
+/// Offsets that are a velocity times seconds.position pass for it where nothing is damped, and know of no damping.
 TEST(StepTerms, GoOnFromTheirPositionsByTheOffsets) {
-  // Offsets that are a velocity times seconds.position pass for it where nothing is damped.
-  Moving moving(false, 0.05);
-  std::fill(moving.damping.begin(), moving.damping.end(), 0.0);
-  const std::size_t n = moving.mesh.nodes.size();
-  const StepSeconds seconds{kSeconds, 3 * kSeconds};
-  std::vector<Vec3> offsets(n), still(n, Vec3::Zero()), expected(n), forces(n);
-  for (std::size_t i = 0; i < n; ++i) offsets[i] = seconds.position * moving.velocities[i];
-  const auto find = [&](const std::vector<Vec3>& velocities, std::span<const Vec3> with_offsets, std::vector<Vec3>& f) {
-    StepTerms terms;
-    find_step_terms(moving.body,
-                    {moving.positions, velocities, moving.rotations, seconds, moving.damping, with_offsets}, terms,
-                    moving.threads);
-    gather_step_forces(moving.body, terms, f, moving.threads);
-  };
-  find(moving.velocities, {}, expected);
-  find(still, offsets, forces);
-  double scale = 0;
-  for (const Vec3& f : expected) scale = std::max(scale, f.norm());
-  for (std::size_t i = 0; i < n; ++i) EXPECT_LT((forces[i] - expected[i]).norm(), 1e-12 * scale);
+  for (const bool secant : {false, true}) {
+    Moving moving(false, 0.05, secant);
+    const std::size_t n = moving.mesh.nodes.size();
+    std::vector<Vec3> offsets(n);
+    const std::vector<Vec3> still(n, Vec3::Zero());
+    StepSource damped = moving.source();
+    damped.seconds = {kSeconds, 3 * kSeconds};
+    for (std::size_t i = 0; i < n; ++i) offsets[i] = damped.seconds.position * moving.velocities[i];
+    const std::vector<double> undamped(moving.damping.size(), 0.0);
+    StepSource by_velocity = damped;
+    by_velocity.damping_stiffness = undamped;
+    damped.velocities = still;
+    damped.offsets = offsets;
+    StepSource by_offset = damped;
+    by_offset.damping_stiffness = undamped;
+    const std::vector<Vec3> expected = forces_with(moving, by_velocity), forces = forces_with(moving, by_offset),
+                            with_damping = forces_with(moving, damped);
+    double scale = 0;
+    for (const Vec3& f : expected) scale = std::max(scale, f.norm());
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_LT((forces[i] - expected[i]).norm(), 1e-12 * scale);
+      EXPECT_LT((with_damping[i] - expected[i]).norm(), 1e-12 * scale);
+    }
+  }
 }
 
 TEST(StepTerms, SumToNoForce) {
@@ -161,8 +182,8 @@ BlockMatrixf assembled_in_float(const Moving& moving, const std::vector<Index>& 
 
 TEST(FloatAssembler, AgreesWithTheAssemblerInDouble) {
   for (const bool one_material : {true, false})
-    for (const double noise : {0.002, 0.05}) {
-      const Moving moving(one_material, noise);
+    for (const auto& [noise, secant] : kStates) {
+      const Moving moving(one_material, noise, secant);
       EXPECT_EQ(moving.terms(1).uniform_ratio, one_material && noise < 0.01);
       const std::vector<Index> row_of_node = shuffled_rows(moving.mesh.nodes.size());
       const BlockMatrixd expected = moving.matrix(moving.node_terms);

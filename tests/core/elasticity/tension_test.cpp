@@ -148,7 +148,7 @@ TEST(StepTension, HasTheMatrixOfItsScalarTwinInFloat) {
   for (const double b : taut.damping) shares.push_back(kStep.velocity * (kStep.position + b));
   StiffnessTerms stiffness;
   find_stiffness_terms(taut.body, taut.positions, taut.rotations, shares, Curvature::None, stiffness, taut.threads);
-  take_step_slopes(taut.body, taut.source(), stiffness);
+  take_step_slopes(taut.body, taut.source(), stiffness, taut.threads);
   stiffness.curvatures = find_tension_curvatures(taut.body, taut.source(), taut.threads);
   ASSERT_EQ(stiffness.curvatures.size(), taut.mesh.tets.size());
   BlockMatrixd expected{stiffness_pattern(taut.mesh.tets, static_cast<Index>(n)), {}};

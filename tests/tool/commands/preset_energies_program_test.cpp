@@ -1,6 +1,7 @@
 /// The presets that move, at their full size, against themselves in steps of half the length: what a preset shows is
 /// physics and not its steps.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
