@@ -189,15 +189,18 @@ double assemble_in_float(Simulator::Parts& parts, const StepWork& work, bool sam
 
 }  // namespace
 
-bool suits_float(Simulator::Parts& parts, const StepWork& work) {
+double rigidity_beyond_float(Simulator::Parts& parts, const StepWork& work) {
   const StepSeconds& seconds = work.step.seconds;
   if (parts.float_seconds != seconds) {
     parts.float_seconds = seconds;
     if (parts.rigidity.mass.empty()) parts.rigidity = rigidity_over_mass(parts);
     parts.float_ratio = greatest_ratio(parts.rigidity, seconds);
   }
-  return parts.params.tolerance >= kLeastTolerance && parts.float_ratio <= kGreatestRatio &&
-         glue_over_mass(parts, work) <= kGreatestRatio;
+  return std::max(parts.float_ratio, glue_over_mass(parts, work)) / kGreatestRatio;
+}
+
+bool suits_float(Simulator::Parts& parts, const StepWork& work) {
+  return rigidity_beyond_float(parts, work) <= 1 && parts.params.tolerance >= kLeastTolerance;
 }
 
 SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work, StepReport& step) {

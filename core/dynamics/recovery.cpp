@@ -20,6 +20,9 @@ bool is_held(const HeldBody& held, const Tet& tet) {
                      [&](Index node) { return held.nodes[static_cast<std::size_t>(node)] != 0; });
 }
 
+/// Times the stiffness of an element in trouble (design 4.5 parts hierarchies at the same).
+constexpr double kMuchStiffer = 10;
+
 /// Far above every threshold, and a float still counts shares of a step there.
 constexpr float kMostSteps = 65536;
 
@@ -67,22 +70,29 @@ std::vector<int> find_seeds(const ElementTroubles& troubles, const std::vector<s
   return rings;
 }
 
-/// Spreads to neighbours what is left of the rings less one, until nothing grows.
+/// Spreads to neighbours what is left of the rings less one, until nothing grows. What is much stiffer than the element
+/// in trouble stays out: it is not what gave way, and a rotation that is not its own strains it with all its stiffness.
 void grow(const ElasticBody& body, std::vector<int>& rings) {
   std::vector<int> at_node(body.rest_positions.size(), 0);
+  std::vector<double> limit(rings.size(), 0), limit_at_node(at_node.size(), 0);  // of mu, Pa
+  for (std::size_t e = 0; e < rings.size(); ++e)
+    if (rings[e] > 0) limit[e] = kMuchStiffer * body.laws[e].mu;
   for (bool grows = true; grows;) {
     grows = false;
     for (std::size_t e = 0; e < rings.size(); ++e)
       for (const Index node : body.tets[e]) {
-        int& reach = at_node[static_cast<std::size_t>(node)];
-        reach = std::max(reach, rings[e] - 1);
+        const auto i = static_cast<std::size_t>(node);
+        if (rings[e] > 1) limit_at_node[i] = std::max(limit_at_node[i], limit[e]);
+        at_node[i] = std::max(at_node[i], rings[e] - 1);
       }
     for (std::size_t e = 0; e < rings.size(); ++e)
-      for (const Index node : body.tets[e])
-        if (rings[e] < at_node[static_cast<std::size_t>(node)]) {
-          rings[e] = at_node[static_cast<std::size_t>(node)];
-          grows = true;
-        }
+      for (const Index node : body.tets[e]) {
+        const auto i = static_cast<std::size_t>(node);
+        if (rings[e] >= at_node[i] || body.laws[e].mu > limit_at_node[i]) continue;
+        rings[e] = at_node[i];
+        limit[e] = std::max(limit[e], limit_at_node[i]);
+        grows = true;
+      }
   }
 }
 
