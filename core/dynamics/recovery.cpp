@@ -1,6 +1,9 @@
 #include "core/dynamics/recovery.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -20,8 +23,11 @@ bool is_held(const HeldBody& held, const Tet& tet) {
                      [&](Index node) { return held.nodes[static_cast<std::size_t>(node)] != 0; });
 }
 
-/// Times the stiffness of an element in trouble (design 4.5 parts hierarchies at the same).
+/// Times the stiffness of an element in trouble.
 constexpr double kMuchStiffer = 10;
+
+/// About an element in trouble, itself included, that share its rotation at first.
+constexpr int kFirstRings = 2;
 
 /// Far above every threshold, and a float still counts shares of a step there.
 constexpr float kMostSteps = 65536;
@@ -65,35 +71,54 @@ std::vector<int> find_seeds(const ElementTroubles& troubles, const std::vector<s
     const ElementTrouble& trouble = troubles[e];
     if (trouble.bad_steps < kStepsToTrouble) continue;
     if (may_give_up[e] != 0 && trouble.shared_steps >= kStepsToGiveUp) continue;
-    rings[e] = 2 + static_cast<int>((trouble.bad_steps - kStepsToTrouble) / kStepsPerRing);
+    rings[e] = kFirstRings + static_cast<int>((trouble.bad_steps - kStepsToTrouble) / kStepsPerRing);
   }
   return rings;
 }
 
-/// Spreads to neighbours what is left of the rings less one, until nothing grows. What is much stiffer than the element
-/// in trouble stays out: it is not what gave way, and a rotation that is not its own strains it with all its stiffness.
-void grow(const ElasticBody& body, std::vector<int>& rings) {
+/// Spreads to neighbours what is left of the rings less one, until nothing grows; not into what has a mu above
+/// `stiffest`, Pa.
+void grow(const ElasticBody& body, double stiffest, std::vector<int>& rings) {
   std::vector<int> at_node(body.rest_positions.size(), 0);
-  std::vector<double> limit(rings.size(), 0), limit_at_node(at_node.size(), 0);  // of mu, Pa
-  for (std::size_t e = 0; e < rings.size(); ++e)
-    if (rings[e] > 0) limit[e] = kMuchStiffer * body.laws[e].mu;
   for (bool grows = true; grows;) {
     grows = false;
     for (std::size_t e = 0; e < rings.size(); ++e)
       for (const Index node : body.tets[e]) {
-        const auto i = static_cast<std::size_t>(node);
-        if (rings[e] > 1) limit_at_node[i] = std::max(limit_at_node[i], limit[e]);
-        at_node[i] = std::max(at_node[i], rings[e] - 1);
+        int& reach = at_node[static_cast<std::size_t>(node)];
+        reach = std::max(reach, rings[e] - 1);
       }
     for (std::size_t e = 0; e < rings.size(); ++e)
-      for (const Index node : body.tets[e]) {
-        const auto i = static_cast<std::size_t>(node);
-        if (rings[e] >= at_node[i] || body.laws[e].mu > limit_at_node[i]) continue;
-        rings[e] = at_node[i];
-        limit[e] = std::max(limit[e], limit_at_node[i]);
-        grows = true;
-      }
+      for (const Index node : body.tets[e])
+        if (rings[e] < at_node[static_cast<std::size_t>(node)] && body.laws[e].mu <= stiffest) {
+          rings[e] = at_node[static_cast<std::size_t>(node)];
+          grows = true;
+        }
   }
+}
+
+/// The greatest mu, Pa, that may share the rotation of an element in trouble with so many rings; infinite if any may.
+/// What is much stiffer is not what gave way, and a rotation that is not its own strains it with all its stiffness; but
+/// trouble that lasts may be tangled with it. Whole decades, so that there are few different ones.
+double stiffest_beside(const ElasticBody& body, std::size_t e, int rings) {
+  const double limit = std::pow(10.0, std::ceil(std::log10(kMuchStiffer * body.laws[e].mu)));
+  return rings > kFirstRings ? std::numeric_limits<double>::infinity() : limit;
+}
+
+/// Rings of all elements that are to share a rotation for those in trouble: the greatest that any of these asks for.
+std::vector<int> find_reach(const ElasticBody& body, const std::vector<int>& seeds) {
+  std::map<double, std::vector<int>> groups;
+  for (std::size_t e = 0; e < seeds.size(); ++e) {
+    if (seeds[e] == 0) continue;
+    std::vector<int>& group = groups[stiffest_beside(body, e, seeds[e])];
+    group.resize(seeds.size(), 0);
+    group[e] = seeds[e];
+  }
+  std::vector<int> reach(seeds.size(), 0);
+  for (auto& [stiffest, group] : groups) {
+    grow(body, stiffest, group);
+    for (std::size_t e = 0; e < reach.size(); ++e) reach[e] = std::max(reach[e], group[e]);
+  }
+  return reach;
 }
 
 /// 1 per element that a pin or pull holds through its piece, so that its trouble may be theirs.
@@ -139,8 +164,7 @@ void count_troubles(const ElasticBody& body, std::span<const Vec3> positions, st
       trouble.bad_steps = 0;
     if (bad[e] == 0 && trouble.sharing == 0) take(pace, trouble.shared_steps);
   }
-  std::vector<int> rings = find_seeds(troubles, may_give_up);
-  grow(body, rings);
+  const std::vector<int> rings = find_reach(body, find_seeds(troubles, may_give_up));
   for (std::size_t e = 0; e < bad.size(); ++e) {
     ElementTrouble& trouble = troubles[e];
     if (rings[e] > 0) trouble.sharing = kStepsToShare;

@@ -2,7 +2,7 @@
 ///
 /// No rotation chosen element by element leaves such a state, a true minimum of the energy. So elements in trouble for
 /// some steps, with their neighbourhood, share one rotation per connected patch for a while: a patch with one rotation
-/// is a linear body, which has no minimum but its rest shape.
+/// is a linear body, which has no minimum but its rest shape. What is much stiffer joins only where the trouble lasts.
 #pragma once
 
 #include <cstdint>

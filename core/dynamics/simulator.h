@@ -55,7 +55,7 @@ struct SolverParams {
   /// Within a frame, elements whose matrix would change by less than this times `tolerance` since it was made keep it.
   double matrix_lag = 0.1;
   bool keep_hierarchy = true;     ///< within a frame, while iteration counts do not grow; else made anew at every step
-  double tolerance = 1e-3;        ///< of the linear solve of a step: |r| / |b|
+  double tolerance = 1e-3;        ///< of the linear solve of a step: |r| / |b|; tighter by itself for very stiff parts
   double force_tolerance = 1e-6;  ///< statics, iterated steps: |residual force| over the force scale of the body
   int max_iterations = 400;       ///< of one linear solve
   int max_newton_iterations = 200;  ///< statics, per frame; iterated steps, per step

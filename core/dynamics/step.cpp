@@ -36,6 +36,9 @@ constexpr double kForceExcess = 0.01;
 /// What is beyond the strength of a pull softens it by their ratio in each solve, and further in the next step.
 constexpr int kMostSolves = 8;
 
+/// Relative residuals below this are rounding.
+constexpr double kLeastSensible = 1e-12;
+
 /// Share of the tension harmless by find_tension_limits that is left out: half, as thickness is only estimated. From a
 /// predictor half of a ninth, though by linear theory Euler bears a third from there and BDF2 a quarter
 /// (linearization_positions): measured, soft bodies in violent motion keep to it.
@@ -94,10 +97,11 @@ void subtract_pull_product(const ActivePull& pull, std::span<const Vec3> positio
   }
 }
 
-/// The system in double: for tolerances that float does not reach, and where it failed. What is soft has small rows
-/// beside what is very stiff: there the residual, relative to all of the right side, has to be smaller by as much, or
-/// they are hardly solved, which acts like forces on them (blocks 1e8 times as stiff as those between them flew apart).
-/// Where that takes too many iterations, the tolerance that was asked for is enough.
+/// The system in double: for tolerances that float does not reach, and where it failed. Rigid motions of a very stiff
+/// part, and what is soft beside it, have rows that are small beside those of its stiffness. A residual relative to all
+/// of the right side has to be smaller by as much, or they are hardly solved, which acts like forces on them: blocks
+/// 1e8 times as stiff as those between them flew apart. A body that is all of one stiffness is solved tighter with
+/// them. Where that does not come to an end, the tolerance that was asked for is enough.
 SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
   {
     const ScopedStage stage(parts.times, "simulate/assemble");
@@ -117,10 +121,11 @@ SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
     parts.multigrid.update(parts.matrix, work.pinned.held);
   }
   const ScopedStage stage(parts.times, "simulate/solve");
-  const double asked = parts.params.tolerance, tolerance = asked / std::max(1.0, rigidity_beyond_float(parts, work));
+  const double asked = parts.params.tolerance, beyond = std::max(1.0, rigidity_beyond_float(parts, work)),
+               tolerance = std::max(asked / beyond, std::min(asked, kLeastSensible));
   SolveReport report =
       parts.multigrid.solve(parts.matrix, work.right_side, work.change, tolerance, 0.0, parts.params.max_iterations);
-  if (report.status == SolveStatus::MaxIterations && report.residual <= asked) report.status = SolveStatus::Converged;
+  if (!report.ok() && report.residual <= asked) report.status = SolveStatus::Converged;
   correct_translations(parts, work);
   return report;
 }

@@ -41,8 +41,8 @@ bool all_finite(std::span<const Vec3> vectors);
 /// and its free fall needs no iteration.
 void correct_translations(const Simulator::Parts& parts, StepWork& work);
 
-/// How much stiffer than it is heavy the stiffest part of the body is for this step, over what leaves float and a
-/// residual relative to all of the right side good enough.
+/// The greatest ratio of stiffness to mass in this step, over the greatest for which float, and a residual relative to
+/// all of the right side, are good enough.
 double rigidity_beyond_float(Simulator::Parts& parts, const StepWork& work);
 
 /// True if such a step may be solved in float: its tolerance is not too tight, and no node is so much stiffer

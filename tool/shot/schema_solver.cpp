@@ -134,7 +134,8 @@ void add_dial(Table<Shot>& t) {
 void add_limits(Table<Shot>& t) {
   constexpr Range kTolerance{0, 1, true};
   t.add("tolerance", of_solver(&P::tolerance), absent_if_zero(number(kTolerance)), "",
-        "dynamic: residual of a step's linear solve over its right-hand side; with error it is chosen where not given.")
+        "dynamic: residual of a step's linear solve over its right-hand side, tighter by itself where parts are very "
+        "stiff; with error it is chosen where not given.")
       .add("force_tolerance", of_solver(&P::force_tolerance), absent_if_zero(number(kTolerance)), "",
            "static, iterated: residual force over the body's scale of force; with error it is chosen where not given.")
       .add("max_iterations", of_solver(&P::max_iterations), whole<int>(1, 1000000), "", "Of one linear solve.")

@@ -152,8 +152,8 @@ TEST(HeterogeneousBody, StepsWithContrastsScatteredOverItsElements) {
   }
 }
 
-/// A bar that is let go under its weight, of soft blocks between others that are `contrast` times as stiff: whatever
-/// that is, it comes to rest where the soft ones let it.
+/// A damped bar that is let go under its weight, of soft blocks between others that are `contrast` times as stiff: it
+/// comes to rest where the soft ones let it.
 StateMeasures at_rest(double contrast, Linearize linearize) {
   BodyModel model = body_model(testing::kuhn_bar({8, 2, 2}, Vec3(0.8, 0.2, 0.2)), {2e4, 0.35, 1000, 2, 0.005});
   for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
@@ -171,10 +171,10 @@ StateMeasures at_rest(double contrast, Linearize linearize) {
   return bench.simulator.measure();
 }
 
-TEST(HeterogeneousBody, BlocksOfAnyStiffnessBetweenSoftOnesComeToRest) {
+TEST(HeterogeneousBody, DampedBlocksOfAnyStiffnessBetweenSoftOnesComeToRest) {
   const StateMeasures expected = at_rest(1e4, Linearize::Iterated);
   for (const Linearize linearize : {Linearize::Start, Linearize::Iterated})
-    for (const double contrast : {1e4, 1e6, 1e8}) {
+    for (const double contrast : {1e5, 1e6, 1e8}) {
       const StateMeasures found = at_rest(contrast, linearize);
       EXPECT_LT(found.kinetic_energy, 1e-6 * expected.elastic_energy) << contrast;
       EXPECT_NEAR(found.elastic_energy, expected.elastic_energy, 0.01 * expected.elastic_energy) << contrast;

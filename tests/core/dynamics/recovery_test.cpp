@@ -38,6 +38,20 @@ TEST_P(EveryScramble, ComesBackToRestEveryTime) {
     }
 }
 
+TEST(Recovery, BringsBodiesBackInWhichStiffElementsAreScattered) {
+  for (const double contrast : {30.0, 100.0, 1e4})
+    for (int seed = 1; seed <= 4; ++seed) {
+      BodyModel model = testing::scramble_model(2);
+      std::mt19937_64 random(100 + static_cast<unsigned>(seed));
+      std::bernoulli_distribution is_stiff(0.2);
+      for (ElementMaterial& material : model.materials)
+        if (is_stiff(random)) material.youngs_modulus *= contrast;
+      const testing::Release release =
+          testing::release(model, testing::scrambles()[0], RotationMethod::Consistent, true, seed, 100);
+      EXPECT_TRUE(release.came_back) << "contrast " << contrast << ", seed " << seed;
+    }
+}
+
 TEST(Recovery, BringsScrambledBodiesBackInFarFewerSteps) {
   int with = 0, without = 0;
   for (int seed = 1; seed <= 5; ++seed)
@@ -188,6 +202,23 @@ TEST(CountTroubles, TakesANeighbourhoodThatGrowsARingEveryTwelveSteps) {
   EXPECT_GT(bar.sharing(), one_ring);
   bar.look(8 * kStepsPerRing);
   EXPECT_EQ(bar.sharing(), static_cast<Index>(bar.mesh.tets.size()));
+}
+
+TEST(CountTroubles, LeavesOutWhatIsMuchStifferUntilTheTroubleLasts) {
+  Watched bar;
+  const auto is_stiff = [&](std::size_t e) { return testing::centroid(bar.mesh, e).x() > 0.2; };
+  for (std::size_t e = 0; e < bar.mesh.tets.size(); ++e)
+    if (is_stiff(e)) bar.body.laws[e].mu *= 1000;
+  const auto stiff_that_share = [&] {
+    Index count = 0;
+    for (std::size_t e = 0; e < bar.troubles.size(); ++e) count += is_stiff(e) && bar.troubles[e].sharing > 0;
+    return count;
+  };
+  bar.look(kStepsToTrouble);
+  EXPECT_GT(bar.sharing(), 0);
+  EXPECT_EQ(stiff_that_share(), 0);
+  bar.look(kStepsPerRing);
+  EXPECT_GT(stiff_that_share(), 0);
 }
 
 TEST(CountTroubles, CountsShortStepsByTheirTimeAndLongOnesAsOne) {
