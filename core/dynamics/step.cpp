@@ -125,7 +125,8 @@ SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
                tolerance = std::max(asked / beyond, std::min(asked, kLeastSensible));
   SolveReport report =
       parts.multigrid.solve(parts.matrix, work.right_side, work.change, tolerance, 0.0, parts.params.max_iterations);
-  if (!report.ok() && report.residual <= asked) report.status = SolveStatus::Converged;
+  // A residual of 0 without success is one over a right side whose norm is not finite.
+  if (!report.ok() && report.residual > 0 && report.residual <= asked) report.status = SolveStatus::Converged;
   correct_translations(parts, work);
   return report;
 }
