@@ -40,8 +40,8 @@ constexpr int kMostSolves = 8;
 constexpr double kLeastSensible = 1e-12;
 
 /// Share of the tension harmless by find_tension_limits that is left out: half, as thickness is only estimated. From a
-/// predictor half of a ninth, though by linear theory Euler bears a third from there and BDF2 a quarter
-/// (linearization_positions): measured, soft bodies in violent motion keep to it.
+/// predictor half of a ninth, on the safe side: by linear theory Euler bears a third there and BDF2 a quarter
+/// (linearization_positions).
 double explicit_share(const SolverParams& params) {
   // Iterated steps that recovery makes one solve linearise at the predictor.
   const bool at_start = params.integrator == Integrator::Euler && linearization(params) == Linearize::Start;

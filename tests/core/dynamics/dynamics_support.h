@@ -47,6 +47,15 @@ inline Pull make_pull(std::vector<Index> points, const Transform& transform, dou
   return pull;
 }
 
+/// A damped bar of blocks of two cubes, in turn soft and `contrast` times as stiff, held at one end.
+inline BodyModel bar_of_blocks(double contrast) {
+  BodyModel model = body_model(kuhn_bar({8, 2, 2}, Vec3(0.8, 0.2, 0.2)), {2e4, 0.35, 1000, 2, 0.005});
+  for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
+    if (static_cast<int>(centroid(model.mesh, e).x() / 0.2) % 2 == 1) model.materials[e].youngs_modulus *= contrast;
+  model.pins = {make_pin(select_nodes(model.mesh, [](const Vec3& p) { return p.x() < 1e-9; }))};
+  return model;
+}
+
 /// Keeps what a Simulator refers to.
 struct Bench {
   explicit Bench(BodyModel model, const SolverParams& params = {}, int thread_count = 1)

@@ -152,17 +152,11 @@ TEST(HeterogeneousBody, StepsWithContrastsScatteredOverItsElements) {
   }
 }
 
-/// A damped bar that is let go under its weight, of soft blocks between others that are `contrast` times as stiff: it
-/// comes to rest where the soft ones let it.
+/// A bar_of_blocks ten seconds after it was let go under its weight.
 StateMeasures at_rest(double contrast, Linearize linearize) {
-  BodyModel model = body_model(testing::kuhn_bar({8, 2, 2}, Vec3(0.8, 0.2, 0.2)), {2e4, 0.35, 1000, 2, 0.005});
-  for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
-    if (static_cast<int>(testing::centroid(model.mesh, e).x() / 0.2) % 2 == 1)
-      model.materials[e].youngs_modulus *= contrast;
-  model.pins = {testing::make_pin(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() < 1e-9; }))};
   SolverParams params;
   params.linearize = linearize;
-  Bench bench(model, params);
+  Bench bench(testing::bar_of_blocks(contrast), params);
   for (int k = 1; k <= 240; ++k) {
     const StepReport report = bench.simulator.step(k, 1 / testing::kFps);
     EXPECT_TRUE(report.ok()) << contrast << ": " << report.culprit;

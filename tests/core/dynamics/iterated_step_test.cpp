@@ -187,16 +187,6 @@ TEST(IteratedStep, ServesRotationsWithoutAnEnergyByTheResidual) {
   for (int k = 1; k <= 3; ++k) ASSERT_TRUE(bench.simulator.step(k, 1.0 / 24).ok());
 }
 
-/// Blocks of two cubes along the bar, in turn soft and so much stiffer; one end held.
-BodyModel two_materials(double contrast) {
-  BodyModel model = body_model(testing::kuhn_bar({8, 2, 2}, Vec3(0.8, 0.2, 0.2)), {2e4, 0.35, 1000, 2, 0.005});
-  for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
-    if (static_cast<int>(testing::centroid(model.mesh, e).x() / 0.2) % 2 == 1)
-      model.materials[e].youngs_modulus *= contrast;
-  model.pins = {testing::make_pin(testing::select_nodes(model.mesh, [](const Vec3& p) { return p.x() < 1e-9; }))};
-  return model;
-}
-
 SolverParams iterated_without_recovery(Integrator integrator) {
   SolverParams params;
   params.integrator = integrator;
@@ -210,7 +200,7 @@ TEST(IteratedStep, IsSolvedAtAStiffnessContrastOfAHundredMillion) {
   for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2}) {
     SolverParams params = iterated_without_recovery(integrator);
     params.recovery = true;
-    Bench bench(two_materials(1e8), params);
+    Bench bench(testing::bar_of_blocks(1e8), params);
     for (int k = 1; k <= 8; ++k) {
       const StepReport report = bench.simulator.step(k, 1.0 / 24);
       ASSERT_TRUE(report.ok()) << "step " << k << ": " << report.culprit;
@@ -226,7 +216,7 @@ TEST(IteratedStep, MovesAlikeAtEveryGreatContrast) {
   for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
     std::vector<Vec3> first;
     for (const double contrast : {1e6, 1e9}) {
-      Bench bench(two_materials(contrast), iterated_without_recovery(integrator));
+      Bench bench(testing::bar_of_blocks(contrast), iterated_without_recovery(integrator));
       const auto energy = [&] {
         const StateMeasures measures = bench.simulator.measure();
         return measures.kinetic_energy + measures.elastic_energy + measures.potential_energy;
