@@ -171,24 +171,32 @@ TEST_P(Interrupt, ByAClosedTerminalEndsSoonAndLeavesNothing) {
 using InterruptTwice = Interrupt;
 
 TEST_P(InterruptTwice, EndsAtOnceAndLeavesNoLockAndNoMarkOfARun) {
-  RunningProgram program("interrupt_twice",
-                         words_of(fmt::format("softreel {} {}/shot.toml --output {} {}", GetParam().command, folder_,
-                                              output(), GetParam().options)));
-  const auto has = [&](std::string_view part) {
-    if (!exists(output())) return false;
-    const std::vector<std::string> names = files_under(output());
-    return std::any_of(names.begin(), names.end(),
-                       [&](const std::string& name) { return name.find(part) != std::string::npos; });
-  };
-  wait_until(program, [&] { return has("/locks/") && has(".running"); });
-  ASSERT_TRUE(has("/locks/") && has(".running")) << "the check can fail";
-  program.signal(SIGINT);
-  pause(milliseconds(20));
-  EXPECT_FALSE(program.has_ended()) << "the second signal came too late to test anything";
-  program.signal(SIGINT);
-  EXPECT_EQ(program.wait().status, 130);
-  EXPECT_FALSE(has("/locks/"));
-  EXPECT_FALSE(has(".running"));
+  // On a busy machine the reading may be over before the second signal comes: then another run is tried.
+  constexpr int kTries = 5;
+  bool in_time = false;
+  for (int attempt = 1; attempt <= kTries && !in_time; ++attempt) {
+    const std::string out = fmt::format("{}/twice{}", folder_, attempt);
+    RunningProgram program("interrupt_twice",
+                           words_of(fmt::format("softreel {} {}/shot.toml --output {} {}", GetParam().command, folder_,
+                                                out, GetParam().options)));
+    const auto has = [&](std::string_view part) {
+      if (!exists(out)) return false;
+      const std::vector<std::string> names = files_under(out);
+      return std::any_of(names.begin(), names.end(),
+                         [&](const std::string& name) { return name.find(part) != std::string::npos; });
+    };
+    wait_until(program, [&] { return has("/locks/") && has(".running"); });
+    program.signal(SIGINT);
+    pause(milliseconds(20));
+    in_time = !program.has_ended();
+    program.signal(SIGINT);
+    const Outcome outcome = program.wait();
+    if (!in_time) continue;
+    EXPECT_EQ(outcome.status, 130);
+    EXPECT_FALSE(has("/locks/"));
+    EXPECT_FALSE(has(".running"));
+  }
+  EXPECT_TRUE(in_time) << "the second signal came too late to test anything";
 }
 
 /// As under nohup, or in the background of a shell.
