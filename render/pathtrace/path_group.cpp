@@ -71,12 +71,12 @@ void PathGroup::drop_ended() {
 }
 
 void PathGroup::prefetch_hit_triangle(const RayHit& hit) const {
-  if (hit.mesh >= 0) prefetch_triangle(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit);
+  if (has_corners(hit)) prefetch_triangle(*picture_.meshes[static_cast<std::size_t>(hit.mesh)], hit);
 }
 
 void PathGroup::prefetch_hit_corners() const {
   for (std::size_t k = 0; k < alive_.size(); ++k)
-    if (hits_[k].mesh >= 0)
+    if (has_corners(hits_[k]))
       prefetch_corners(*picture_.meshes[static_cast<std::size_t>(hits_[k].mesh)], hits_[k], alive_[k]->ray());
 }
 

@@ -48,6 +48,8 @@ class PathGroup {
   void shoot_light_rays();
   void drop_ended();
   /// What the paths will read of the meshes is asked for in turn, as triangles name their corners.
+  /// Whether surface_point will read the mesh.
+  bool has_corners(const RayHit& hit) const { return hit.mesh >= 0 && !picture_.rays->is_ground(hit.mesh); }
   void prefetch_hit_triangle(const RayHit& hit) const;
   void prefetch_hit_corners() const;
 

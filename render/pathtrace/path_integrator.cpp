@@ -116,7 +116,7 @@ void PathIntegrator::end_on_last_ray() {
 }
 
 void PathIntegrator::catch_shadow(const RayHit& hit) {
-  const SurfacePoint point = surface_point(*picture_.meshes.back(), hit, ray_);
+  const SurfacePoint point = picture_.rays->surface_point(*picture_.meshes.back(), hit, ray_);
   const CaughtLight light = caught_light(picture_, point, ray_.time, sampler_.numbers(sample_, 1));
   first_hit_.caught = true;
   first_hit_.position = point.position;
@@ -240,7 +240,7 @@ void PathIntegrator::arrive(const RayHit& hit, PathScratch& scratch) {
     return;
   }
   const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(bounces_ + 1));
-  SurfacePoint point = surface_point(mesh, hit, ray_);
+  SurfacePoint point = picture_.rays->surface_point(mesh, hit, ray_);
   const Bsdf& bsdf = bsdf_at(hit, point, scratch.colored);
   if (bounces_ == 0) record_first_hit(hit, point, bsdf);
   find_media(bsdf, point);

@@ -299,11 +299,11 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
   CHECK(window_of(params).width() > 0);
   CHECK(window_of(params).height() > 0);
   check_meshes(scene);
-  // Light that scatters inside a body needs a tree of it, and a tree cells that are not long.
+  // Light that scatters inside a body needs a tree of it, and a tree cells that are not long. Else the mesh only names
+  // the ground and its look.
   const bool ground_apart = scene.ground && !(scene.ground->appearance.subsurface > 0);
-  const MotionMesh ground = !scene.ground  ? MotionMesh{}
-                            : ground_apart ? ground_mesh(*scene.ground, scene.camera, 1)
-                                           : ground_mesh(*scene.ground, scene.camera);
+  const MotionMesh ground =
+      scene.ground ? ground_mesh(*scene.ground, scene.camera, ground_apart ? 1 : kTreeCells) : MotionMesh{};
   parts_->tables.drop_unused();
   Picture picture = make_picture(scene, params, ground, parts_->tables);
   const LightSet lights(scene);
@@ -314,7 +314,8 @@ Image PathTracer::render(const Scene& scene, const RenderParams& params, const s
     const ScopedStage stage(parts_->times, "render/build");
     parts_->threads.run([&] { parts_->rays->build(bodies, expected_paths(params)); });
   }
-  const SceneRays rays = ground_apart ? SceneRays(*parts_->rays, bodies, ground) : SceneRays(*parts_->rays);
+  const SceneRays rays = ground_apart ? SceneRays(*parts_->rays, bodies, ground_shape(*scene.ground, scene.camera))
+                                      : SceneRays(*parts_->rays);
   picture.rays = &rays;
   const ScopedStage stage(parts_->times, "render/trace");
   const ChannelLayout channels(scene, picture, params.all_channels(), params.width, params.height);

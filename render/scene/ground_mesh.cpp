@@ -64,35 +64,45 @@ void add_flat(MotionMesh& mesh, const Vec3f& begin, const Vec3f& end, const Vec3
 
 }  // namespace
 
-MotionMesh ground_mesh(const Ground& ground, const Camera& camera, int cells) {
+GroundShape ground_shape(const Ground& ground, const Camera& camera) {
   if (!(ground.size > 0) || (ground.style == GroundStyle::Sweep && !(ground.sweep > 0)))
     throw input_error(
         fmt::format("ground.size = {}, ground.sweep = {} leave no ground.\n"
                     "  Accepted: m, above 0. Correct the two, or leave the ground out.",
                     ground.size, ground.sweep));
   const Axes axes = ground_axes(ground, camera);
+  GroundShape shape{axes.across, axes.along, ground.height, 0.5f * ground.size, 0.5f * ground.size};
+  if (ground.style == GroundStyle::Plane) return shape;
+  shape.floor_end = ground.sweep;
+  shape.has_wall = true;
+  shape.radius = arc_radius(ground);
+  shape.top = ground.height + shape.radius + shape.half_width;
+  return shape;
+}
+
+MotionMesh ground_mesh(const Ground& ground, const Camera& camera, int cells) {
+  const GroundShape shape = ground_shape(ground, camera);
   MotionMesh mesh;
   mesh.name = "ground";
   mesh.appearance = ground.appearance;
   mesh.times.resize(1);
-  const float half = 0.5f * ground.size;
-  const Vec3f up(0, 1, 0), origin(0, ground.height, 0), half_width = half * axes.across;
-  if (ground.style == GroundStyle::Plane) {
-    add_row(mesh, origin - half * axes.along, half_width, up, 1);
-    add_row(mesh, origin + half * axes.along, half_width, up, 1);
+  const Vec3f up(0, 1, 0), origin(0, shape.height, 0), half_width = shape.half_width * shape.across;
+  const Vec3f begin = origin - shape.half_width * shape.along, end = origin + shape.floor_end * shape.along;
+  if (!shape.has_wall) {
+    add_row(mesh, begin, half_width, up, 1);
+    add_row(mesh, end, half_width, up, 1);
     return mesh;
   }
-  const float radius = arc_radius(ground);
-  const Vec3f bend = origin + ground.sweep * axes.along, center = bend + radius * up;
-  add_flat(mesh, origin - half * axes.along, bend, half_width, up, cells);
+  const Vec3f center = end + shape.radius * up;
+  add_flat(mesh, begin, end, half_width, up, cells);
   for (int k = 0; k < kArcSegments; ++k) {
     const float angle = kHalfPi * static_cast<float>(k) / kArcSegments;
-    const Vec3f outward = std::sin(angle) * axes.along - std::cos(angle) * up;
-    add_row(mesh, center + radius * outward, half_width, -outward, cells);
+    const Vec3f outward = std::sin(angle) * shape.along - std::cos(angle) * up;
+    add_row(mesh, center + shape.radius * outward, half_width, -outward, cells);
   }
-  const Vec3f wall = center + radius * axes.along, top = wall + half * up;
-  add_flat(mesh, wall, top, half_width, -axes.along, cells);
-  add_row(mesh, top, half_width, -axes.along, cells);
+  const Vec3f wall = center + shape.radius * shape.along, top = wall + (shape.top - center.y()) * up;
+  add_flat(mesh, wall, top, half_width, -shape.along, cells);
+  add_row(mesh, top, half_width, -shape.along, cells);
   return mesh;
 }
 

@@ -6,12 +6,26 @@
 namespace softreel {
 
 /// A square around the origin (Plane), or the studio backdrop (Sweep): the square as far as `sweep` metres away from
-/// the camera, then a quarter circle of radius sweep / 2, then a wall. Normals are smooth and exact on the arc. Throws
-/// input_error for a size or sweep that leaves no ground.
-///
-/// cells: of a Sweep, across. It stands askew in the world: the boxes that a tree puts round long strips would overlap,
-/// and every ray would have to try dozens of them (measured: 6 % of the time of a picture).
-MotionMesh ground_mesh(const Ground& ground, const Camera& camera, int cells = 64);
+/// the camera, then a quarter circle of radius sweep / 2, then a wall.
+struct GroundShape {
+  Vec3f across, along;    ///< unit, horizontal; along: of a Sweep, away from the camera
+  float height = 0;       ///< m, of the floor
+  float half_width = 0;   ///< m, across to both sides; the floor begins so far before the origin
+  float floor_end = 0;    ///< m, along
+  bool has_wall = false;  ///< and the bend before it:
+  float radius = 0;       ///< m, of the bend
+  float top = 0;          ///< m, height at which the wall ends
+};
+
+/// Throws input_error for a size or sweep that leaves no ground.
+GroundShape ground_shape(const Ground& ground, const Camera& camera);
+
+/// Cells of a Sweep, across, for a tree. It stands askew in the world: the boxes that a tree puts round long strips
+/// would overlap, and every ray would have to try dozens of them (measured: 6 % of the time of a picture).
+inline constexpr int kTreeCells = 64;
+
+/// Its triangles. Normals are smooth and exact on the arc. Errors as ground_shape.
+MotionMesh ground_mesh(const Ground& ground, const Camera& camera, int cells = kTreeCells);
 
 /// The two-tone pattern; on a Sweep its squares follow the backdrop up the wall.
 class GroundPattern {

@@ -286,7 +286,7 @@ void SceneStage::add_tracing(KeyHasher& key, const std::vector<Camera>& camera_m
 }
 
 StageKey SceneStage::trace_key(int frame) const {
-  KeyHasher key("trace 10");
+  KeyHasher key("trace 11");
   const Look look = this->look(frame);
   add_look(key, look);
   add_tracing(key, look.camera_motion);
@@ -304,7 +304,7 @@ StageKey SceneStage::preview_key(int frame) const {
 }
 
 StageKey SceneStage::content_key(int frame, const Scene& scene) const {
-  KeyHasher key("picture 6");
+  KeyHasher key("picture 7");
   Look look = this->look(frame);
   look.camera = scene.camera;  // a turntable's is its own
   add_look(key, look);

@@ -78,7 +78,10 @@ LightSet::Sun LightSet::make_sun(const SunLight& light) {
 
 LightSet::LightSet(const Scene& scene)
     : lamp_tree_(bounds_of_many(scene.area_lights)), emitters_(scene.meshes), environment_(scene.environment) {
-  for (const AreaLight& light : scene.area_lights) lamps_.push_back(make_lamp(light));
+  for (const AreaLight& light : scene.area_lights) {
+    lamps_.push_back(make_lamp(light));
+    has_visible_lamps_ = has_visible_lamps_ || light.visible;
+  }
   for (const SunLight& light : scene.suns) suns_.push_back(make_sun(light));
 }
 
@@ -112,7 +115,7 @@ float LightSet::importance(std::size_t k, const Receiver& receiver) const {
   return cosine + reach <= 0 ? 0.0f : sun.importance * std::max(cosine, 0.05f);
 }
 
-bool LightSet::may_reach(std::size_t k, const Receiver& receiver) const {
+inline bool LightSet::may_reach(std::size_t k, const Receiver& receiver) const {
   if (k >= lamp_places() || !lamp_tree_.empty()) return importance(k, receiver) > 0;
   return std::visit(
       [&](const auto& light) {
@@ -174,8 +177,8 @@ bool LightSet::sample_light(std::size_t k, const Receiver& receiver, float choic
   return may_reach(k, receiver) && sample_from(k, receiver, choice, u, sample, point_like) && sample.pdf > 0;
 }
 
-bool LightSet::sample_lamps(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u,
-                            LightSample& sample) const {
+inline bool LightSet::sample_lamps(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u,
+                                   LightSample& sample) const {
   float share = 1;
   if (!lamp_tree_.empty()) {
     Index chosen = 0;
@@ -187,8 +190,8 @@ bool LightSet::sample_lamps(std::size_t k, const Receiver& receiver, float choic
   return found;
 }
 
-bool LightSet::sample_from(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
-                           bool& point_like) const {
+inline bool LightSet::sample_from(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u,
+                                  LightSample& sample, bool& point_like) const {
   point_like = false;
   if (k < lamp_places()) return sample_lamps(k, receiver, choice, u, sample);
   if (k < emitter_place()) {
@@ -226,6 +229,7 @@ void LightSet::for_lamps_near(const Vec3f& position, const Vec3f& direction, flo
 Vec3f LightSet::area_lights_along(const Vec3f& position, const Vec3f& direction, float distance,
                                   const RayOrigin& origin) const {
   Vec3f sum = Vec3f::Zero();
+  if (origin.from_camera && !has_visible_lamps_) return sum;
   const auto add = [&](std::size_t k, const auto& light) {
     float at = 0;
     if (origin.from_camera && !light.visible()) return;

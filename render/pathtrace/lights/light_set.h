@@ -93,7 +93,8 @@ class LightSet {
   float lamp_probability(std::size_t lamp, const Receiver& receiver) const;
 
   std::vector<Lamp> lamps_;
-  LightTree lamp_tree_;  ///< over the lamps if they are many, else empty
+  bool has_visible_lamps_ = false;  ///< that the camera sees
+  LightTree lamp_tree_;             ///< over the lamps if they are many, else empty
   std::vector<Sun> suns_;
   EmittingMeshes emitters_;
   EnvironmentLight environment_;

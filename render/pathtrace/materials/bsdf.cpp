@@ -127,7 +127,7 @@ void Bsdf::look_from(BsdfView& view) const {
   view.shares = shares(view);
 }
 
-LobeShares Bsdf::shares(const BsdfView& view) const {
+inline LobeShares Bsdf::shares(const BsdfView& view) const {
   const float cosine = view.o.z();
   const float reflected = (f0_ * view.e.x() + f90_ * view.e.y()).maxCoeff();
   const float under = (view.inside ? most_diffuse_from_behind_ : most_diffuse_) * view.diffuse_passed;
@@ -148,7 +148,7 @@ LobeShares Bsdf::shares(const BsdfView& view) const {
           p.cosine * scale, p.subsurface * scale, p.glass * scale};
 }
 
-Vec3f Bsdf::cosine_lobe(const BsdfView& view, float cos_i) const {
+inline Vec3f Bsdf::cosine_lobe(const BsdfView& view, float cos_i) const {
   constexpr float kInvPi = 1 / kPi;
   const Vec2f ei = ggx_albedo_.at(cos_i);
   Vec3f sum = Vec3f::Zero();
@@ -157,7 +157,7 @@ Vec3f Bsdf::cosine_lobe(const BsdfView& view, float cos_i) const {
   return sum * (cos_i * kInvPi);
 }
 
-void Bsdf::add_reflection(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const {
+[[gnu::always_inline]] inline void Bsdf::add_reflection(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const {
   const Vec3f& o = view.o;
   const Vec3f h = (o + i).normalized();
   const float cos_d = o.dot(h);
@@ -199,7 +199,7 @@ BsdfValue Bsdf::evaluate_leaving(const Vec3f& i) const {
   return {tint * (passed_out * density), density};
 }
 
-void Bsdf::add_base(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const {
+inline void Bsdf::add_base(const BsdfView& view, const Vec3f& i, BsdfValue& sum) const {
   if (i.z() > 0) {
     if (has_cosine_lobe_) {
       sum.value += cosine_lobe(view, i.z());

@@ -22,11 +22,15 @@ struct BsdfSample {
   bool subsurface = false;  ///< enters the body there, to be scattered inside (Bsdf::subsurface)
 };
 
+[[gnu::noinline]] inline Vec3f beers_law(const Vec3f& absorption, float distance) {
+  return (-distance * absorption).array().exp().matrix();
+}
+
 /// What is left of light after `distance` m, by Beer's law; all of it where it comes from beyond everything, as nobody
 /// is inside a body there. absorption: 1/m.
-inline Vec3f transmittance(const Vec3f& absorption, float distance) {
-  if (absorption.isZero(0) || !std::isfinite(distance)) return Vec3f::Ones();
-  return (-distance * absorption).array().exp().matrix();
+[[gnu::always_inline]] inline Vec3f transmittance(const Vec3f& absorption, float distance) {
+  const bool clear = absorption.x() == 0 && absorption.y() == 0 && absorption.z() == 0;
+  return clear || !std::isfinite(distance) ? Vec3f(Vec3f::Ones()) : beers_law(absorption, distance);
 }
 
 }  // namespace softreel

@@ -34,7 +34,7 @@ void MotionBox::add(const MotionMesh& mesh) {
   high = high.cwiseMax(most + Vec3f::Constant(margin));
 }
 
-SceneRays::SceneRays(const RayScene& trees, const std::vector<const MotionMesh*>& bodies, const MotionMesh& ground)
+SceneRays::SceneRays(const RayScene& trees, const std::vector<const MotionMesh*>& bodies, const GroundShape& ground)
     : trees_(trees), ground_(ground), ground_mesh_(static_cast<Index>(bodies.size())) {
   for (const MotionMesh* body : bodies) bodies_.add(*body);
 }

@@ -37,19 +37,25 @@ class SceneRays {
   /// Only trees, of whatever they hold.
   explicit SceneRays(const RayScene& trees) : trees_(trees) {}
   /// Trees of `bodies`, and the ground as mesh number bodies.size().
-  SceneRays(const RayScene& trees, const std::vector<const MotionMesh*>& bodies, const MotionMesh& ground);
+  SceneRays(const RayScene& trees, const std::vector<const MotionMesh*>& bodies, const GroundShape& ground);
 
   const RayScene& trees() const { return trees_; }
   /// As RayScene's.
   bool intersect(const Ray& ray, RayHit& hit) const;
   bool occluded(const Ray& ray) const;
   void intersect_packet(std::span<const Ray> rays, std::span<RayHit> hits) const;
+  /// Whether a hit's mesh is the ground that no tree holds: then its triangle is none of a mesh.
+  bool is_ground(Index mesh) const { return mesh == ground_mesh_; }
+  /// Where `ray` hit; mesh: the one of that number.
+  SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) const {
+    return is_ground(hit.mesh) ? ground_->surface_point(hit, ray) : softreel::surface_point(mesh, hit, ray);
+  }
 
  private:
   const RayScene& trees_;
   std::optional<SweptGround> ground_;
-  Index ground_mesh_ = -1;
-  MotionBox bodies_;  ///< with a ground only: without one most rays meet it
+  Index ground_mesh_ = -2;  ///< of none; -1 is that of no hit
+  MotionBox bodies_;        ///< with a ground only: without one most rays meet it
 };
 
 }  // namespace softreel

@@ -92,9 +92,7 @@ SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray&
   point.inside = point.geometric_normal.dot(ray.direction) > 0;
   const float side = point.inside ? -1.0f : 1.0f;
   point.geometric_normal *= side;
-  const float epsilon = 1e-5f * std::max(point.position.cwiseAbs().maxCoeff(), 1e-3f * hit.distance) + 1e-9f;
-  point.lifted = point.position + epsilon * point.geometric_normal;
-  point.lowered = point.position - epsilon * point.geometric_normal;
+  set_ray_starts(point, hit.distance);
   point.shading_normal = point.geometric_normal;
   if (mesh.times.front().normals.empty()) return point;
   const Triangle& normals = mesh.corners_of_normals()[static_cast<std::size_t>(hit.triangle)];

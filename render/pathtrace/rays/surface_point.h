@@ -1,6 +1,7 @@
 /// The surface at the end of a ray: position, normals and where to start the next ray.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "render/pathtrace/rays/ray_scene.h"
@@ -35,6 +36,13 @@ struct SurfacePoint {
   Vec3f lifted;            ///< start of rays that stay on the viewer's side
   Vec3f lowered;           ///< start of rays that pass through
 };
+
+/// lifted and lowered: the position, off the surface by the rounding of coordinates. distance: of the hit.
+inline void set_ray_starts(SurfacePoint& point, float distance) {
+  const float epsilon = 1e-5f * std::max(point.position.cwiseAbs().maxCoeff(), 1e-3f * distance) + 1e-9f;
+  point.lifted = point.position + epsilon * point.geometric_normal;
+  point.lowered = point.position - epsilon * point.geometric_normal;
+}
 
 /// The point of `mesh` that `ray` hit. Corners move on straight lines between the mesh's times.
 ///

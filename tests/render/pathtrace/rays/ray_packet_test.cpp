@@ -121,8 +121,7 @@ TEST(RayPacket, ChangesNothingBesideTheSweptGround) {
   Ground ground;
   ground.height = -1;
   ground.size = 4;
-  const MotionMesh swept = ground_mesh(ground, Camera{}, 1);
-  expect_company_changes_nothing(SceneRays(*scene, addresses(meshes), swept));
+  expect_company_changes_nothing(SceneRays(*scene, addresses(meshes), ground_shape(ground, Camera{})));
 }
 
 }  // namespace
