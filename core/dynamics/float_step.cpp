@@ -77,9 +77,8 @@ double norm(std::span<const Vec3> vectors) {
   return std::sqrt(sum);
 }
 
-/// The same ratio for the bonds of glue, whose ends move together as a stiff part does.
-double glue_over_mass(const Simulator::Parts& parts, const StepWork& work) {
-  if (work.bonds.empty()) return 0;
+/// Per node, of the springs of glue in S.
+std::vector<double> glue_stiffness(const Simulator::Parts& parts, const StepWork& work) {
   std::vector<double> stiffness(parts.nodes(), 0.0);
   for (const ActivePull& pull : work.pulls) {
     const double factor = work.step.seconds.velocity * work.step.seconds.position * pull_factor(pull, work.positions);
@@ -88,8 +87,22 @@ double glue_over_mass(const Simulator::Parts& parts, const StepWork& work) {
         stiffness[static_cast<std::size_t>(spring.nodes[k])] +=
             factor * spring.stiffness * spring.weights[k] * spring.weights[k];
   }
+  return stiffness;
+}
+
+/// The same ratio for the bonds of glue, whose ends move together as a stiff part does. What the rings even out is the
+/// small mass of a node at the surface, or of one whose elements are hardly filled.
+double glue_over_mass(const Simulator::Parts& parts, const StepWork& work) {
+  if (work.bonds.empty()) return 0;
+  const std::vector<double> stiffness = glue_stiffness(parts, work);
+  double at_a_node = 0;
+  for (std::size_t i = 0; i < stiffness.size(); ++i)
+    at_a_node = std::max(at_a_node, stiffness[i] / parts.masses.mass[i]);
+  if (at_a_node <= kGreatestRatio) return at_a_node;  // no sums exceed it
+  const std::vector<float> around = sum_over_rings(parts.body.tets, stiffness);
   double greatest = 0;
-  for (std::size_t i = 0; i < stiffness.size(); ++i) greatest = std::max(greatest, stiffness[i] / work.node_terms[i]);
+  for (std::size_t i = 0; i < around.size(); ++i)
+    greatest = std::max(greatest, static_cast<double>(around[i]) / static_cast<double>(parts.rigidity.mass[i]));
   return greatest;
 }
 

@@ -26,6 +26,9 @@ constexpr std::uint32_t kLeavingBlocks = 1u << 16;
 /// Block of the points on lights where they are sampled twice.
 constexpr std::uint32_t kTwoLightsBlock = 1u << 17;
 
+/// Times that a walk inside a body may meet the ground that the body stands on or in.
+constexpr int kMostGroundMeetings = 16;
+
 /// Dimensions of a scattering event's block.
 enum Dimension : std::size_t {
   kLightU = 0,
@@ -60,10 +63,14 @@ const Bsdf& PathIntegrator::bsdf_at(const RayHit& hit, SurfacePoint& point, std:
     return *picture_.lines[mesh];
   if (const ColoredSurface* surface = picture_.colored[mesh].get())
     return colored.emplace(surface->at(hit, ray_, cone_.width_at(hit.distance), scattered_wide_, point));
+  if (picture_.pattern && mesh + 1 == picture_.meshes.size()) return ground_at(point.position);
+  return (scattered_wide_ ? picture_.blurred : picture_.bsdfs)[mesh];
+}
+
+const Bsdf& PathIntegrator::ground_at(const Vec3f& position) const {
   const std::vector<Bsdf>& bsdfs = scattered_wide_ ? picture_.blurred : picture_.bsdfs;
-  if (picture_.pattern && mesh + 1 == picture_.meshes.size() && picture_.pattern->alternate(point.position))
-    return bsdfs.back();
-  return bsdfs[mesh];
+  const bool alternates = picture_.pattern && picture_.pattern->alternate(position);
+  return alternates ? bsdfs.back() : bsdfs[picture_.meshes.size() - 1];
 }
 
 void PathIntegrator::record_first_hit(const RayHit& hit, const SurfacePoint& point, const Bsdf& bsdf) {
@@ -189,17 +196,8 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   // About the triangle's own normal: the interpolated one could lead out again.
   ray_.direction = ShadingFrame(point.geometric_normal).to_world(inward);
   const SampleBlock leaving_numbers = sampler_.numbers(sample_, kLeavingBlocks + static_cast<std::uint32_t>(bounces_));
-  RandomStream stream(std::uint64_t{std::bit_cast<std::uint32_t>(leaving_numbers[kRoulette])} << 32 |
-                      std::bit_cast<std::uint32_t>(leaving_numbers[kBsdfU]));
-  const WalkStart start{ray_, throughput_.cwiseProduct(bsdf.subsurface().color), leaving_numbers[kSide],
-                        leaving_numbers[kLength]};
-  WalkExit exit;
-  if (!random_walk(picture_.rays->trees(), mesh_, medium_of(bsdf.subsurface()), start, stream, exit)) return false;
-  throughput_ = throughput_.cwiseProduct(exit.weight);
-  // Seen from outside: the ray that would come in where the walk goes out.
-  Ray seen = exit.ray;
-  seen.direction = -exit.ray.direction;
-  const SurfacePoint out = surface_point(*picture_.meshes[static_cast<std::size_t>(mesh_)], exit.hit, seen);
+  SurfacePoint out;
+  if (!walk_out(bsdf.subsurface(), leaving_numbers, out)) return false;
   const ShadingFrame frame(out.shading_normal);
   origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light, ray_.time};
   leaving_ = true;
@@ -214,6 +212,32 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   next.wide = true;
   follow(next, out, frame);
   return true;
+}
+
+bool PathIntegrator::walk_out(const Subsurface& inside, const SampleBlock& numbers, SurfacePoint& out) {
+  RandomStream stream(std::uint64_t{std::bit_cast<std::uint32_t>(numbers[kRoulette])} << 32 |
+                      std::bit_cast<std::uint32_t>(numbers[kBsdfU]));
+  const ScatteringMedium medium = medium_of(inside);
+  WalkStart start{ray_, throughput_.cwiseProduct(inside.color), numbers[kSide], numbers[kLength]};
+  for (int k = 0; k < kMostGroundMeetings; ++k) {
+    WalkExit exit;
+    if (!random_walk(picture_.rays->trees(), mesh_, medium, start, stream, exit)) return false;
+    throughput_ = throughput_.cwiseProduct(exit.weight);
+    // Seen from outside: the ray that would come in where the walk goes out.
+    Ray seen = exit.ray;
+    seen.direction = -exit.ray.direction;
+    out = surface_point(*picture_.meshes[static_cast<std::size_t>(mesh_)], exit.hit, seen);
+    if (!picture_.rays->is_buried(out.position)) return true;
+    // The ground sends it back in.
+    throughput_ = throughput_.cwiseProduct(ground_at(out.position).albedo());
+    const Vec3f inward = -cosine_hemisphere(Vec2f(stream.next(), stream.next()));
+    start.ray.origin = out.lowered;
+    start.ray.direction = ShadingFrame(out.geometric_normal).to_world(inward);
+    start.importance = throughput_.cwiseProduct(inside.color);
+    start.choice = stream.next();
+    start.first = stream.next();
+  }
+  return false;
 }
 
 bool PathIntegrator::survives_roulette(float u) {

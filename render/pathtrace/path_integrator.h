@@ -111,6 +111,8 @@ class PathIntegrator {
   };
 
   const Bsdf& bsdf_at(const RayHit& hit, SurfacePoint& point, std::optional<Bsdf>& colored);
+  /// Of the ground, which is the last mesh.
+  const Bsdf& ground_at(const Vec3f& position) const;
   void record_first_hit(const RayHit& hit, const SurfacePoint& point, const Bsdf& bsdf);
   /// What the ray sees by itself: lights it passes, surroundings if it hit nothing.
   void collect(bool hit, float distance);
@@ -131,6 +133,8 @@ class PathIntegrator {
   /// where it leaves, lights sampled there; counts as one scattering with the one that entered. False where the path
   /// ends.
   bool scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const Vec3f& inward, PathScratch& scratch);
+  /// Walks from ray_ through the body to where light leaves it above the ground; false where the path ends.
+  bool walk_out(const Subsurface& inside, const SampleBlock& numbers, SurfacePoint& out);
   /// What the ray that arrives at `point` came through, and what is behind it.
   void find_media(const Bsdf& bsdf, const SurfacePoint& point);
   bool survives_roulette(float u);

@@ -74,30 +74,30 @@ void require_whole(const TetMesh& mesh, const SurfaceMesh& solid, double edge, c
       name, part, edge, count_pieces(mesh), 0.5 * edge));
 }
 
-void warn_of_thickening(const TetMesh& mesh, const Solid& solid, const std::string& name, const Log& log) {
-  constexpr double kMostMore = 0.05;
-  const double share = share_of_volume(mesh, solid);
-  if (share > 1 + kMostMore)
-    log.warn(
-        fmt::format("body '{}': the tetrahedra have {:.0f} % more volume than {} encloses: what is thinner than "
-                    "they are was thickened. A smaller edge or more tets follow it better.",
-                    name, 100 * (share - 1), solid.parts.parts.front().place()));
+void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& name, const Log& log) {
+  constexpr double kMost = 0.05;
+  const double more = share_of_volume(mesh, solid) - 1;
+  if (std::abs(more) <= kMost) return;
+  log.warn(
+      fmt::format("body '{}': the tetrahedra have {:.0f} % {} volume than {} encloses: {}. A smaller edge or more "
+                  "tets follow it better.",
+                  name, 100 * std::abs(more), more > 0 ? "more" : "less", solid.parts.parts.front().place(),
+                  more > 0 ? "what is thinner than they are was thickened"
+                           : "they cut off what is smaller than they are, or it overlaps itself"));
 }
 
-void require_most_of(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads,
-                     const Log& log) {
-  constexpr double kLeast = 0.8, kMost = 0.9, kFarShare = 0.1;
+void require_most_of(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads) {
+  constexpr double kLeast = 0.8, kFarShare = 0.1;
   const double share = share_of_volume(mesh, solid);
   const SurfacePart& part = solid.parts.parts.front();
   // Coarse ones cut off what is convex; a surface that overlaps itself counts its volume twice.
-  if (share >= kMost || measure_deviation(solid.surface, mesh, threads).from_surface <= kFarShare * part.box.diagonal())
+  if (share >= kLeast ||
+      measure_deviation(solid.surface, mesh, threads).from_surface <= kFarShare * part.box.diagonal())
     return;
-  const std::string line = fmt::format(
-      "body '{}': {} is too thin for the tetrahedra: they fill {:.0f} % of its volume. Accepted: {} % or "
-      "more. Set a smaller edge or more tets, or mode = \"embedded\", which covers it whatever the edge.",
-      name, part.place(), 100 * share, 100 * kLeast);
-  if (share < kLeast) throw input_error(line);
-  log.warn(line);
+  throw input_error(
+      fmt::format("body '{}': {} is too thin for the tetrahedra: they fill {:.0f} % of its volume. Accepted: {} % or "
+                  "more. Set a smaller edge or more tets, or mode = \"embedded\", which covers it whatever the edge.",
+                  name, part.place(), 100 * share, 100 * kLeast));
 }
 
 }  // namespace softreel

@@ -316,10 +316,9 @@ void finish_solids(const Job& job, Filling& filling) {
     }
     const ScopedStage stage(job.times, "tetrahedralize/check");
     require_whole(stuffed.mesh, solid.surface, filling.edge, solid.thinnest_part().place(), job.name);
-    if (!job.is_graded())
-      warn_of_thickening(stuffed.mesh, solid, job.name, job.log);
-    else if (job.params.error == 0)  // an error says itself what it misses
-      require_most_of(stuffed.mesh, solid, job.name, job.threads, job.log);
+    if (job.params.error > 0) continue;  // it says itself what it misses
+    if (job.is_graded()) require_most_of(stuffed.mesh, solid, job.name, job.threads);
+    warn_of_volume(stuffed.mesh, solid, job.name, job.log);
   }
 }
 

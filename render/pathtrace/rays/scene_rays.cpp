@@ -12,9 +12,9 @@ struct RayPart {
   std::array<std::size_t, kRayPacket> places{};  ///< in the packet
   std::size_t count = 0;
 
-  Ray& add(const Ray& ray, std::size_t place) {
+  void add(const Ray& ray, std::size_t place) {
     places[count] = place;
-    return rays[count++] = ray;
+    rays[count++] = ray;
   }
   std::span<const Ray> shot() const { return {rays.data(), count}; }
 };
@@ -44,9 +44,7 @@ bool SceneRays::intersect(const Ray& ray, RayHit& hit) const {
   const bool on_ground = ground_->intersect(ray, hit);
   if (on_ground) hit.mesh = ground_mesh_;
   if (!bodies_.may_meet(ray)) return on_ground;
-  Ray nearer = ray;
-  if (on_ground) nearer.max_distance = hit.distance;
-  return trees_.intersect(nearer, hit) || on_ground;
+  return trees_.intersect(on_ground ? before_ground(ray, hit) : ray, hit) || on_ground;
 }
 
 bool SceneRays::occluded(const Ray& ray) const {
@@ -62,8 +60,7 @@ void SceneRays::intersect_packet(std::span<const Ray> rays, std::span<RayHit> hi
     const bool on_ground = ground_->intersect(rays[k], hits[k]);
     hits[k].mesh = on_ground ? ground_mesh_ : -1;
     if (!bodies_.may_meet(rays[k])) continue;
-    Ray& nearer = part.add(rays[k], k);
-    if (on_ground) nearer.max_distance = hits[k].distance;
+    part.add(on_ground ? before_ground(rays[k], hits[k]) : rays[k], k);
   }
   if (part.count == 0) return;
   std::array<RayHit, kRayPacket> found;

@@ -46,12 +46,21 @@ class SceneRays {
   void intersect_packet(std::span<const Ray> rays, std::span<RayHit> hits) const;
   /// Whether a hit's mesh is the ground that no tree holds: then its triangle is none of a mesh.
   bool is_ground(Index mesh) const { return mesh == ground_mesh_; }
+  /// Whether a point of a body is under the ground's floor, where no light comes from outside.
+  bool is_buried(const Vec3f& position) const { return ground_ && ground_->is_buried(position); }
   /// Where `ray` hit; mesh: the one of that number.
   SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) const {
     return is_ground(hit.mesh) ? ground_->surface_point(hit, ray) : softreel::surface_point(mesh, hit, ray);
   }
 
  private:
+  /// The part of a ray that hit the ground in which it may hit bodies.
+  Ray before_ground(const Ray& ray, const RayHit& hit) const {
+    Ray nearer = ray;
+    nearer.max_distance = std::max(0.0f, hit.distance - ground_->depth_of_burial(hit, ray));
+    return nearer;
+  }
+
   const RayScene& trees_;
   std::optional<SweptGround> ground_;
   Index ground_mesh_ = -2;  ///< of none; -1 is that of no hit

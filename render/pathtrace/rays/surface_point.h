@@ -37,9 +37,12 @@ struct SurfacePoint {
   Vec3f lowered;           ///< start of rays that pass through
 };
 
-/// lifted and lowered: the position, off the surface by the rounding of coordinates. distance: of the hit.
+/// How far off a surface rays start: by more than the rounding of coordinates. distance: of the hit.
+inline float start_offset(const Vec3f& position, float distance) {
+  return 1e-5f * std::max(position.cwiseAbs().maxCoeff(), 1e-3f * distance) + 1e-9f;
+}
 inline void set_ray_starts(SurfacePoint& point, float distance) {
-  const float epsilon = 1e-5f * std::max(point.position.cwiseAbs().maxCoeff(), 1e-3f * distance) + 1e-9f;
+  const float epsilon = start_offset(point.position, distance);
   point.lifted = point.position + epsilon * point.geometric_normal;
   point.lowered = point.position - epsilon * point.geometric_normal;
 }

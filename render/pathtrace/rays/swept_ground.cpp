@@ -94,6 +94,19 @@ bool SweptGround::intersect(const Ray& ray, RayHit& hit) const {
   return nearest.part != kNothing;
 }
 
+float SweptGround::depth_of_burial(const RayHit& hit, const Ray& ray) const {
+  if (hit.triangle != kFloor) return 0;
+  const Vec3f position = ray.origin + hit.distance * ray.direction;
+  return kNear * start_offset(position, hit.distance) / std::abs(ray.direction.y());
+}
+
+bool SweptGround::is_buried(const Vec3f& position) const {
+  if (position.y() >= shape_.height + kNear * start_offset(position, 0)) return false;
+  const float along = position.dot(shape_.along);
+  return along >= -shape_.half_width && along <= shape_.floor_end &&
+         std::abs(position.dot(shape_.across)) <= shape_.half_width;
+}
+
 SurfacePoint SweptGround::surface_point(const RayHit& hit, const Ray& ray) const {
   SurfacePoint point;
   point.position = ray.origin + hit.distance * ray.direction;

@@ -12,6 +12,9 @@ namespace softreel {
 /// presets/first_pull.toml.
 ///
 /// What lies on the hollow side of all three is convex, so a line that begins there meets the ground once at most.
+///
+/// Bodies stand on the floor with soles that lie in it up to rounding. What is so near the floor that rays which leave
+/// it could start below counts as buried: the ray of a glass body meets the floor, not the sole.
 class SweptGround {
  public:
   explicit SweptGround(const GroundShape& shape);
@@ -20,6 +23,10 @@ class SweptGround {
   bool intersect(const Ray& ray, RayHit& hit) const;
   /// Whether the ray meets it before its end.
   bool blocks(const Ray& ray) const;
+  /// How far before a hit of the floor the ray is nearer to it than that, m; 0 for other parts.
+  float depth_of_burial(const RayHit& hit, const Ray& ray) const;
+  /// Whether a point of a body is under the floor, or as good as in it.
+  bool is_buried(const Vec3f& position) const;
   /// Where `ray` met it, with exact normals.
   SurfacePoint surface_point(const RayHit& hit, const Ray& ray) const;
 
@@ -45,6 +52,7 @@ class SweptGround {
   void cross_wall(const Line& line, Crossing& nearest) const;
   void cross_bend(const Line& line, Crossing& nearest) const;
 
+  static constexpr float kNear = 2.5f;  ///< start offsets: that of the sole, that of the ray's own start, and rounding
   GroundShape shape_;
   Vec2f center_;   ///< of the bend's circle; without a wall, of no size and where the floor ends
   float back_;     ///< along, of the wall

@@ -305,6 +305,43 @@ TEST(GluedBodies, GlueTooStiffToBeSolvedIsNamed) {
   EXPECT_TRUE(bench.simulator.state().bonds.empty()) << "the state is left as it was";
 }
 
+/// Halves of which the right one is hardly there at the edges of its glued face, as lattice cells at a surface are.
+BodyModel halves_with_empty_edges() {
+  const Vec3 size(0.4, 0.2, 0.2);
+  BodyModel right = moved_model(kuhn_bar({16, 8, 8}, size), soft(), Vec3(0.4, 0, 0), "right");
+  right.mesh.fill.assign(right.mesh.tets.size(), 1.0);
+  for (std::size_t e = 0; e < right.mesh.tets.size(); ++e)
+    for (const Index node : right.mesh.tets[e]) {
+      const Vec3& x = right.mesh.nodes[static_cast<std::size_t>(node)];
+      if (x.x() < 0.4 + 1e-9 && x.y() < 1e-9) right.mesh.fill[e] = 1e-5;
+    }
+  return glued(pinned_left(moved_model(kuhn_bar({14, 7, 7}, size), soft(), Vec3::Zero(), "left")), right, 1e-3);
+}
+
+TEST(GluedBodies, NodesOfHardlyAnyMassDoNotSendStepsToDouble) {
+  // Only steps in float keep coarse levels, within a frame.
+  SolverParams exact;
+  exact.tolerance = 1e-9;
+  const BodyModel model = halves_with_empty_edges();
+  Bench in_float(model), in_double(model, exact);
+  int kept = 0;
+  double moved = 0;
+  for (int k = 1; k <= 24; ++k) {
+    const StepReport report = in_float.simulator.step(k / 4.0, kStep);
+    ASSERT_TRUE(report.ok());
+    kept += report.kept_hierarchy ? 1 : 0;
+    const StepReport reference = in_double.simulator.step(k / 4.0, kStep);
+    ASSERT_TRUE(reference.ok());
+    ASSERT_FALSE(reference.kept_hierarchy);
+    const SimulationState &a = in_float.simulator.state(), &b = in_double.simulator.state();
+    for (std::size_t i = 0; i < a.positions.size(); ++i)
+      moved = std::max(moved, (b.positions[i] - model.mesh.nodes[i]).norm());
+    ASSERT_LT(distance(a, b), 1e-3 * moved) << k;
+  }
+  EXPECT_GT(kept, 12);
+  EXPECT_GT(moved, 0.02);
+}
+
 TEST(GluedBodies, BodiesOfVeryDifferentMeshesAreSolvedInAsFewIterations) {
   const auto iterations = [](int across, int other) {
     Bench bench(halves(across, other));

@@ -80,7 +80,8 @@ TEST(Render, SaysThatFarFromTheOriginContactsGetLost) {
     return at != std::string::npos;
   };
   EXPECT_TRUE(said(3000));
-  EXPECT_FALSE(said(300));
+  EXPECT_TRUE(said(300));
+  EXPECT_FALSE(said(60));
 }
 
 TEST(Render, ADamagedStateIsSaidAndSimulatedAgainFromTheOneBefore) {

@@ -1,0 +1,75 @@
+// Bodies that stand on the ground or in it: no light comes from below, however their soles are rounded.
+#include <gtest/gtest.h>
+
+#include "tests/render/test_scenes.h"
+
+namespace softreel {
+namespace {
+
+enum class Look { Glass, Subsurface };
+
+Appearance look_of(Look look) {
+  Appearance appearance = matte(0.8f);
+  if (look == Look::Glass) {
+    appearance.transmission = 1;
+    appearance.roughness = 0;
+    appearance.ior = 1.33f;
+  } else {
+    appearance.subsurface = 1;
+    appearance.subsurface_radius = Vec3f::Constant(0.2f);
+    appearance.subsurface_scale = 1;
+  }
+  return appearance;
+}
+
+/// A cube of 1 m whose sole is `sole` m above the ground, under a sky that shines from below only.
+Scene cube_over_light(Look look, float sole, float height) {
+  Scene scene;
+  scene.environment.zenith = scene.environment.horizon = Vec3f::Zero();
+  scene.environment.nadir = Vec3f::Constant(100);
+  scene.meshes.push_back(hard_cube(0.5f, look_of(look)));
+  for (Vec3f& p : scene.meshes[0].times[0].positions) p.y() += height + sole + 0.5f;
+  scene.ground = Ground{};
+  scene.ground->height = height;
+  scene.ground->size = 1e6f;  // little passes its rim
+  scene.ground->appearance = matte(0.5f);
+  scene.camera.position = Vec3f(1.3f, height + 1.5f, 2.5f);
+  scene.camera.target = Vec3f(0, height + 0.4f, 0);
+  return scene;
+}
+
+double brightest(const Image& image) {
+  double most = 0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (const float value : image.channels[c].pixels) most = std::max(most, static_cast<double>(value));
+  return most;
+}
+
+class StandingBodies : public testing::TestWithParam<Look> {};
+
+TEST_P(StandingBodies, LetNoLightThroughTheGround) {
+  for (const float height : {0.0f, 0.7f, -13.3f})
+    for (const float sole : {0.0f, 1e-6f, -1e-6f, -0.02f, 0.02f}) {
+      const Image image = rendered(cube_over_light(GetParam(), sole, height), small_params(48, 16));
+      EXPECT_LT(brightest(image), 1e-3) << height << " " << sole;
+    }
+}
+
+/// In even light a body of albedo 1 looks like the light, whatever part of it the ground hides.
+TEST_P(StandingBodies, KeepTheLightOfAWhiteGround) {
+  for (const float sole : {0.0f, -0.1f, 0.1f}) {
+    Scene scene = cube_over_light(GetParam(), sole, 0);
+    scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Vec3f::Ones();
+    scene.meshes[0].appearance.base_color = Vec3f::Ones();
+    scene.ground->appearance = matte(1);
+    RenderParams params = small_params(24, 256);
+    params.max_bounces = 400;
+    EXPECT_NEAR(mean_of(rendered(scene, params).channels[0]), 1, 0.01) << sole;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Looks, StandingBodies, testing::Values(Look::Glass, Look::Subsurface),
+                         [](const auto& one) { return one.param == Look::Glass ? "Glass" : "Subsurface"; });
+
+}  // namespace
+}  // namespace softreel
