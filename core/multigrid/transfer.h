@@ -8,7 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/sparse/block_kernels.h"
 #include "core/sparse/weight_matrix.h"
-#include "core/tetmesh/bcc_lattice.h"
+#include "core/tetmesh/lattice/bcc_lattice.h"
 
 namespace softreel {
 

@@ -9,7 +9,7 @@
 
 namespace softreel {
 
-/// Where the body-centred cubic lattice of a mesh lies (core/tetmesh/bcc_lattice.h).
+/// Where the body-centred cubic lattice of a mesh lies (core/tetmesh/lattice/bcc_lattice.h).
 struct LatticeFrame {
   Vec3 origin = Vec3::Zero();  ///< position of lattice node (0, 0, 0), m
   double spacing = 0;          ///< cubic cell size = long edge, m; 0: the mesh was cut from no lattice

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "core/tetmesh/farthest_point.h"
-#include "core/tetmesh/hidden_surface.h"
-#include "core/tetmesh/hole_caps.h"
+#include "core/tetmesh/surface/hidden_surface.h"
+#include "core/tetmesh/surface/hole_caps.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {

@@ -1,7 +1,7 @@
 // The readers of tetrahedra, and what is measured of each mesh.
 #include "core/base/check.h"
 #include "core/base/error.h"
-#include "core/tetmesh/tet_mesh_file.h"
+#include "core/tetmesh/files/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
 #include "tests/fuzz/fuzz_target.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/skinning/embedding.h"
-#include "core/tetmesh/bcc_lattice.h"
+#include "core/tetmesh/lattice/bcc_lattice.h"
 #include "core/tetmesh/tet_mesh.h"
 
 namespace softreel::testing {

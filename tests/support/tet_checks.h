@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/isosurface_stuffing.h"
+#include "core/tetmesh/stuffing/isosurface_stuffing.h"
 #include "core/tetmesh/tet_mesh.h"
 #include "core/tetmesh/tet_quality.h"
 

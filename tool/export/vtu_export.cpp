@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/base/check.h"
-#include "core/tetmesh/vtu_file.h"
+#include "core/tetmesh/files/vtu_file.h"
 #include "tool/export/tet_fields.h"
 
 namespace softreel {

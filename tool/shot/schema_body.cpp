@@ -1,7 +1,7 @@
 // The tables of bodies: placement, size of the tetrahedra, regions, pins, pulls, materials.
 #include <fmt/format.h>
 
-#include "core/tetmesh/tet_mesh_file.h"
+#include "core/tetmesh/files/tet_mesh_file.h"
 #include "render/pathtrace/materials/sheen.h"
 #include "tool/shot/codecs.h"
 #include "tool/shot/keyed_appearance.h"

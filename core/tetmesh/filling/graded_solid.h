@@ -6,9 +6,9 @@
 #include "core/base/log.h"
 #include "core/base/parallel.h"
 #include "core/base/timer.h"
-#include "core/tetmesh/error_budget.h"
 #include "core/tetmesh/filling/solids.h"
-#include "core/tetmesh/isosurface_stuffing.h"
+#include "core/tetmesh/graded/error_budget.h"
+#include "core/tetmesh/stuffing/isosurface_stuffing.h"
 
 namespace softreel {
 

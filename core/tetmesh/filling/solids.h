@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/mesh/surface_mesh.h"
-#include "core/tetmesh/surface_parts.h"
+#include "core/tetmesh/surface/surface_parts.h"
 
 namespace softreel {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/tetmesh/sheet_shells.h"
+#include "core/tetmesh/surface/sheet_shells.h"
 
 namespace softreel {
 namespace {

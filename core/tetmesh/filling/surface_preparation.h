@@ -6,8 +6,8 @@
 
 #include "core/base/log.h"
 #include "core/mesh/surface_mesh.h"
-#include "core/tetmesh/embedded_lattice.h"
-#include "core/tetmesh/surface_parts.h"
+#include "core/tetmesh/cells/embedded_lattice.h"
+#include "core/tetmesh/surface/surface_parts.h"
 
 namespace softreel {
 

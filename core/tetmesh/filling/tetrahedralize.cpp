@@ -8,18 +8,18 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/tetmesh/boundary_fit.h"
-#include "core/tetmesh/boundary_mending.h"
+#include "core/tetmesh/boundary/boundary_fit.h"
 #include "core/tetmesh/filling/graded_solid.h"
 #include "core/tetmesh/filling/mesh_promises.h"
 #include "core/tetmesh/filling/solids.h"
 #include "core/tetmesh/filling/surface_preparation.h"
 #include "core/tetmesh/filling/waiting_log.h"
-#include "core/tetmesh/graded_stuffing.h"
+#include "core/tetmesh/graded/graded_stuffing.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
-#include "core/tetmesh/mesh_pieces.h"
+#include "core/tetmesh/stuffing/boundary_mending.h"
+#include "core/tetmesh/stuffing/mesh_pieces.h"
+#include "core/tetmesh/stuffing/thin_parts.h"
 #include "core/tetmesh/tet_quality.h"
-#include "core/tetmesh/thin_parts.h"
 
 namespace softreel {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "core/tetmesh/tet_mesh_file.h"
+#include "core/tetmesh/files/tet_mesh_file.h"
 #include "tests/benchmark/stability/bar_body.h"
 #include "tests/benchmark/stability/methods.h"
 

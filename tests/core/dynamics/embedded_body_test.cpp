@@ -8,7 +8,7 @@
 #include "core/skinning/embedding.h"
 #include "core/skinning/skinning.h"
 #include "core/tetmesh/filling/tetrahedralize.h"
-#include "core/tetmesh/surface_parts.h"
+#include "core/tetmesh/surface/surface_parts.h"
 #include "core/tetmesh/tet_quality.h"
 #include "tests/core/dynamics/dynamics_support.h"
 #include "tests/support/surfaces.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/row_crossings.h"
+#include "core/tetmesh/surface/row_crossings.h"
 #include "core/tetmesh/triangle_tree.h"
 #include "tests/support/surfaces.h"
 

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/mesh/corner_normals.h"
-#include "core/tetmesh/boundary_mending.h"
-#include "core/tetmesh/isosurface_stuffing.h"
+#include "core/tetmesh/stuffing/boundary_mending.h"
+#include "core/tetmesh/stuffing/isosurface_stuffing.h"
 #include "tests/support/surfaces.h"
 
 namespace softreel {

@@ -1,4 +1,4 @@
-#include "core/tetmesh/bcc_cells.h"
+#include "core/tetmesh/cells/bcc_cells.h"
 
 #include <algorithm>
 #include <random>

@@ -1,11 +1,11 @@
-#include "core/tetmesh/bcc_lattice.h"
+#include "core/tetmesh/lattice/bcc_lattice.h"
 
 #include <random>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/lattice_nodes.h"
+#include "core/tetmesh/lattice/lattice_nodes.h"
 
 namespace softreel {
 namespace {

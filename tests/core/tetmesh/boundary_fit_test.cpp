@@ -1,11 +1,11 @@
-#include "core/tetmesh/boundary_fit.h"
+#include "core/tetmesh/boundary/boundary_fit.h"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/boundary_mending.h"
+#include "core/tetmesh/stuffing/boundary_mending.h"
 #include "core/tetmesh/tet_quality.h"
 #include "tests/support/surfaces.h"
 #include "tests/support/tet_checks.h"

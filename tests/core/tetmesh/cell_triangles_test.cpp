@@ -1,12 +1,12 @@
 // In a crowded cell trees find what one finds one by one.
-#include "core/tetmesh/cell_triangles.h"
+#include "core/tetmesh/cells/cell_triangles.h"
 
 #include <random>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/surface_parts.h"
+#include "core/tetmesh/surface/surface_parts.h"
 
 namespace softreel {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/tetmesh/tet_mesh_file.h"
+#include "core/tetmesh/files/tet_mesh_file.h"
 #include "core/tetmesh/tet_quality.h"
 
 namespace softreel {

@@ -1,5 +1,5 @@
 // Embedded mode: what is joined stays joined, what is parted stays parted, and volumes are the solid's.
-#include "core/tetmesh/embedded_lattice.h"
+#include "core/tetmesh/cells/embedded_lattice.h"
 
 #include <filesystem>
 #include <numbers>

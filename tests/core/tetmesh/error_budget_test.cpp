@@ -1,4 +1,4 @@
-#include "core/tetmesh/error_budget.h"
+#include "core/tetmesh/graded/error_budget.h"
 
 #include <filesystem>
 
@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/tetmesh/filling/tetrahedralize.h"
-#include "core/tetmesh/graded_stuffing.h"
+#include "core/tetmesh/graded/graded_stuffing.h"
 #include "tests/support/surfaces.h"
 #include "tests/support/tet_checks.h"
 #include "tests/support/tiny_mesh_reader.h"

@@ -1,11 +1,11 @@
-#include "core/tetmesh/gap_refinement.h"
+#include "core/tetmesh/graded/gap_refinement.h"
 
 #include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/graded_stuffing.h"
+#include "core/tetmesh/graded/graded_stuffing.h"
 #include "tests/support/surfaces.h"
 
 namespace softreel {

@@ -1,4 +1,4 @@
-#include "core/tetmesh/graded_stuffing.h"
+#include "core/tetmesh/graded/graded_stuffing.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/boundary_mending.h"
+#include "core/tetmesh/stuffing/boundary_mending.h"
 #include "tests/support/tet_checks.h"
 
 namespace softreel {

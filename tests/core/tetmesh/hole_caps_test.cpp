@@ -1,4 +1,4 @@
-#include "core/tetmesh/hole_caps.h"
+#include "core/tetmesh/surface/hole_caps.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "core/tetmesh/narrow_band.h"
+#include "core/tetmesh/surface/narrow_band.h"
 
 #include <cmath>
 #include <limits>

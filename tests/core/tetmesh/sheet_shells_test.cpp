@@ -1,5 +1,5 @@
 /// The skin of a sheet with a thickness is closed, however the sheet is folded.
-#include "core/tetmesh/sheet_shells.h"
+#include "core/tetmesh/surface/sheet_shells.h"
 
 #include <random>
 #include <utility>

@@ -1,5 +1,5 @@
 /// Samples of a surface lie on it, nowhere sparser than asked for, and hold its vertices.
-#include "core/tetmesh/surface_samples.h"
+#include "core/tetmesh/surface/surface_samples.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/tetmesh/filling/waiting_log.h"
-#include "core/tetmesh/surface_parts.h"
+#include "core/tetmesh/surface/surface_parts.h"
 #include "tests/support/surfaces.h"
 #include "tests/support/tet_checks.h"
 #include "tests/support/tiny_mesh_reader.h"

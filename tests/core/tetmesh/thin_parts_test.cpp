@@ -1,4 +1,4 @@
-#include "core/tetmesh/thin_parts.h"
+#include "core/tetmesh/stuffing/thin_parts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/tet_mesh_file.h"
+#include "core/tetmesh/files/tet_mesh_file.h"
 #include "tests/support/bcc_bar.h"
 #include "tool/export/tet_fields.h"
 
