@@ -8,6 +8,7 @@ namespace {
 /// What presents the body: lamps, camera, ground, picture. Made for bodies of about a metre.
 constexpr const char* kStage = R"(
 [solver]
+integrator = "bdf2"
 substeps = 4
 
 [camera]
