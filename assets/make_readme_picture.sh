@@ -10,7 +10,7 @@ if [ $# -lt 1 ] || [ $# -gt 2 ]; then
 fi
 program=$1
 samples=${2:-64}
-frames="1 40 51"  # at rest, at full stretch, on its way down again
+frames="1 40 46"  # at rest, at full stretch, just after it is let go
 
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)

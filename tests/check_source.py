@@ -3,6 +3,7 @@
 
 Prints each violation as FILE:LINE: what is wrong; exit status 1 if there is any.
 """
+import graphlib
 import os
 import re
 import subprocess
@@ -115,10 +116,28 @@ def types_defined_twice(paths):
             for name, where in sorted(places.items()) if len(where) > 1]
 
 
+def folder_circles(paths):
+    """Folders of the program that include each other in a circle, by way of others too; one circle if there are any."""
+    graph = {}
+    for path in paths:
+        if path.split("/")[0] not in ("core", "render", "tool"):
+            continue
+        with open(os.path.join(ROOT, path), encoding="utf-8") as f:
+            included = re.findall(r'^\s*#\s*include\s*"([^"]+)"', f.read(), re.MULTILINE)
+        folder = os.path.dirname(path)
+        graph.setdefault(folder, set()).update(os.path.dirname(i) for i in included if os.path.dirname(i) != folder)
+    try:
+        graphlib.TopologicalSorter(graph).prepare()
+    except graphlib.CycleError as error:
+        return ["folders include each other in a circle: " + " <- ".join(error.args[1])]
+    return []
+
+
 def main():
     paths = sources()
     problems = [problem for path in paths for problem in check_file(path)]
     problems += types_defined_twice(paths)
+    problems += folder_circles(paths)
     formatted = subprocess.run(["clang-format", "--dry-run", "-Werror"] + paths, cwd=ROOT, capture_output=True, text=True)
     misformatted = [line for line in formatted.stderr.splitlines() if "error:" in line][:20]
     if formatted.returncode != 0 and not misformatted:

@@ -9,7 +9,7 @@
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/filling/tetrahedralize.h"
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "tests/support/peak_memory.h"
 
 namespace softreel {

@@ -2,7 +2,7 @@
 #include "core/base/check.h"
 #include "core/base/error.h"
 #include "core/tetmesh/files/tet_mesh_file.h"
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace softreel::fuzz {

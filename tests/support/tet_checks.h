@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/tetmesh/quality/tet_quality.h"
 #include "core/tetmesh/stuffing/isosurface_stuffing.h"
 #include "core/tetmesh/tet_mesh.h"
-#include "core/tetmesh/tet_quality.h"
 
 namespace softreel::test {
 

@@ -8,7 +8,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/tetmesh/boundary_surface.h"
 #include "core/tetmesh/files/tet_mesh_file.h"
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "tool/bodies/at_field.h"
 #include "tool/bodies/weight_maps.h"
 

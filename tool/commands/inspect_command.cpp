@@ -11,7 +11,7 @@
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/readers/mesh_import.h"
 #include "core/tetmesh/files/tet_mesh_file.h"
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "tool/cache/json_text.h"
 #include "tool/commands/commands.h"
 #include "tool/report/cut_picture.h"

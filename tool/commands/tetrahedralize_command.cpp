@@ -16,7 +16,7 @@
 #include "core/tetmesh/files/tet_mesh_file.h"
 #include "core/tetmesh/filling/tetrahedralize.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "tool/cache/atomic_file.h"
 #include "tool/cache/json_text.h"
 #include "tool/commands/commands.h"

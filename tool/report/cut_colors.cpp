@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 
 namespace softreel {
 namespace {

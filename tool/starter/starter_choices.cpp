@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/mesh/edge_angles.h"
 #include "core/mesh/mesh_check.h"
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "tool/starter/starter_selections.h"
 
 namespace softreel {

@@ -8,8 +8,8 @@
 
 #include "core/tetmesh/filling/waiting_log.h"
 #include "core/tetmesh/graded/gap_refinement.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "core/tetmesh/stuffing/mesh_pieces.h"
-#include "core/tetmesh/tet_quality.h"
 #include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {

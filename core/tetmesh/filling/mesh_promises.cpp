@@ -7,8 +7,8 @@
 
 #include "core/base/check.h"
 #include "core/base/error.h"
-#include "core/tetmesh/boundary_check.h"
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/boundary_check.h"
+#include "core/tetmesh/quality/tet_quality.h"
 
 namespace softreel {
 
@@ -28,6 +28,17 @@ double share_of_volume(const TetMesh& mesh, const Solid& solid) {
     volume += mesh.fill_of(e) * tet_volume(node(0), node(1), node(2), node(3));
   }
   return volume / std::abs(solid.parts.parts.front().volume);
+}
+
+/// Whether the tetrahedra miss so much of a surface that a loss of volume can come from there. If not, it overlaps
+/// itself: its volume counts twice.
+bool is_cut_off(double loss, const TetMesh& mesh, const Solid& solid, const Threads& threads) {
+  double area = 0;
+  for (const Triangle& t : solid.surface.triangles) {
+    const auto x = [&](std::size_t k) -> const Vec3& { return solid.surface.positions[at(t[k])]; };
+    area += 0.5 * (x(1) - x(0)).cross(x(2) - x(0)).norm();
+  }
+  return loss <= area * measure_deviation(solid.surface, mesh, threads).from_surface;
 }
 
 }  // namespace
@@ -74,16 +85,18 @@ void require_whole(const TetMesh& mesh, const SurfaceMesh& solid, double edge, c
       name, part, edge, count_pieces(mesh), 0.5 * edge));
 }
 
-void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& name, const Log& log) {
+void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads,
+                    const Log& log) {
   constexpr double kMost = 0.05;
   const double more = share_of_volume(mesh, solid) - 1;
   if (std::abs(more) <= kMost) return;
+  const SurfacePart& part = solid.parts.parts.front();
+  if (more < 0 && !is_cut_off(-more * std::abs(part.volume), mesh, solid, threads)) return;
   log.warn(
       fmt::format("body '{}': the tetrahedra have {:.0f} % {} volume than {} encloses: {}. A smaller edge or more "
                   "tets follow it better.",
-                  name, 100 * std::abs(more), more > 0 ? "more" : "less", solid.parts.parts.front().place(),
-                  more > 0 ? "what is thinner than they are was thickened"
-                           : "they cut off what is smaller than they are, or it overlaps itself"));
+                  name, 100 * std::abs(more), more > 0 ? "more" : "less", part.place(),
+                  more > 0 ? "what is thinner than they are was thickened" : "they cut off what is round or thin"));
 }
 
 void require_most_of(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads) {

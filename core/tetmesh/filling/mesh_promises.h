@@ -34,7 +34,8 @@ void require_whole(const TetMesh& mesh, const SurfaceMesh& solid, double edge, c
                    const std::string& name);
 
 /// Warns if the tetrahedra of a solid that is one closed part have more volume than it, or less.
-void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& name, const Log& log);
+void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads,
+                    const Log& log);
 
 /// Throws input_error if they leave out much of it, far from where they are.
 void require_most_of(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads);

@@ -16,10 +16,10 @@
 #include "core/tetmesh/filling/waiting_log.h"
 #include "core/tetmesh/graded/graded_stuffing.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "core/tetmesh/stuffing/boundary_mending.h"
 #include "core/tetmesh/stuffing/mesh_pieces.h"
 #include "core/tetmesh/stuffing/thin_parts.h"
-#include "core/tetmesh/tet_quality.h"
 
 namespace softreel {
 namespace {
@@ -318,7 +318,7 @@ void finish_solids(const Job& job, Filling& filling) {
     require_whole(stuffed.mesh, solid.surface, filling.edge, solid.thinnest_part().place(), job.name);
     if (job.params.error > 0) continue;  // it says itself what it misses
     if (job.is_graded()) require_most_of(stuffed.mesh, solid, job.name, job.threads);
-    warn_of_volume(stuffed.mesh, solid, job.name, job.log);
+    warn_of_volume(stuffed.mesh, solid, job.name, job.threads, job.log);
   }
 }
 

@@ -5,8 +5,8 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/surface_mesh.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "core/tetmesh/tet_mesh.h"
-#include "core/tetmesh/tet_quality.h"
 
 namespace softreel {
 

@@ -46,8 +46,10 @@ class SceneRays {
   void intersect_packet(std::span<const Ray> rays, std::span<RayHit> hits) const;
   /// Whether a hit's mesh is the ground that no tree holds: then its triangle is none of a mesh.
   bool is_ground(Index mesh) const { return mesh == ground_mesh_; }
-  /// Whether a point of a body is under the ground's floor, where no light comes from outside.
-  bool is_buried(const Vec3f& position) const { return ground_ && ground_->is_buried(position); }
+  /// Of a point of a body; Beyond where the ground is none or in the trees, as one that scatters light inside is.
+  FloorSide side_of_floor(const Vec3f& position) const {
+    return ground_ ? ground_->side_of_floor(position) : FloorSide::Beyond;
+  }
   /// Where `ray` hit; mesh: the one of that number.
   SurfacePoint surface_point(const MotionMesh& mesh, const RayHit& hit, const Ray& ray) const {
     return is_ground(hit.mesh) ? ground_->surface_point(hit, ray) : softreel::surface_point(mesh, hit, ray);

@@ -100,11 +100,14 @@ float SweptGround::depth_of_burial(const RayHit& hit, const Ray& ray) const {
   return kNear * start_offset(position, hit.distance) / std::abs(ray.direction.y());
 }
 
-bool SweptGround::is_buried(const Vec3f& position) const {
-  if (position.y() >= shape_.height + kNear * start_offset(position, 0)) return false;
+FloorSide SweptGround::side_of_floor(const Vec3f& position) const {
   const float along = position.dot(shape_.along);
-  return along >= -shape_.half_width && along <= shape_.floor_end &&
-         std::abs(position.dot(shape_.across)) <= shape_.half_width;
+  if (along < -shape_.half_width || along > shape_.floor_end ||
+      std::abs(position.dot(shape_.across)) > shape_.half_width)
+    return FloorSide::Beyond;
+  const float height = position.y() - shape_.height;
+  if (std::abs(height) < kNear * start_offset(position, 0)) return FloorSide::Near;
+  return height > 0 ? FloorSide::Above : FloorSide::Below;
 }
 
 SurfacePoint SweptGround::surface_point(const RayHit& hit, const Ray& ray) const {

@@ -7,6 +7,9 @@
 
 namespace softreel {
 
+/// Where a point of a body is: Near means as good as in the floor, Beyond that there is no floor over or under it.
+enum class FloorSide { Above, Near, Below, Beyond };
+
 /// The surface that ground_mesh approximates, by arithmetic: a floor, a quarter of a cylinder and a wall, or the floor
 /// alone. Most rays of a picture meet a studio's backdrop: in a tree it took a quarter of the time of
 /// presets/first_pull.toml.
@@ -25,8 +28,7 @@ class SweptGround {
   bool blocks(const Ray& ray) const;
   /// How far before a hit of the floor the ray is nearer to it than that, m; 0 for other parts.
   float depth_of_burial(const RayHit& hit, const Ray& ray) const;
-  /// Whether a point of a body is under the floor, or as good as in it.
-  bool is_buried(const Vec3f& position) const;
+  FloorSide side_of_floor(const Vec3f& position) const;
   /// Where `ray` met it, with exact normals.
   SurfacePoint surface_point(const RayHit& hit, const Ray& ray) const;
 

@@ -1,4 +1,4 @@
-#include "core/tetmesh/boundary_check.h"
+#include "core/tetmesh/quality/boundary_check.h"
 
 #include <gtest/gtest.h>
 

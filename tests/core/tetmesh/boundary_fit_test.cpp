@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/tetmesh/quality/tet_quality.h"
 #include "core/tetmesh/stuffing/boundary_mending.h"
-#include "core/tetmesh/tet_quality.h"
 #include "tests/support/surfaces.h"
 #include "tests/support/tet_checks.h"
 

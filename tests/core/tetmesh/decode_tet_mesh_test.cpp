@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/tetmesh/files/tet_mesh_file.h"
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 
 namespace softreel {
 namespace {

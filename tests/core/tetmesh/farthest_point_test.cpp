@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 #include "tests/support/surfaces.h"
 
 namespace softreel {

@@ -85,6 +85,18 @@ TEST(WarnOfVolume, ALossIsSaidAsAGainIs) {
   EXPECT_LT(losses, 5);
 }
 
+TEST(WarnOfVolume, WhatOverlapsItselfHasLostNothing) {
+  // Along the line that the tube follows twice over, its volume counts twice.
+  const SurfaceMesh tube = test::make_ring(240, 24, [](double a, double b) -> Vec3 {
+    const double ring = 1 + 0.1 * std::cos(b);
+    return {ring * std::cos(2 * a), 0.1 * std::sin(b), ring * std::sin(2 * a)};
+  });
+  std::vector<std::string> lines;
+  const double share = measure_quality(fill(tube, 0.06, lines), Threads(1)).volume / std::abs(volume_of(tube));
+  EXPECT_LT(share, 0.7);
+  for (const std::string& line : lines) EXPECT_EQ(line.find("% less volume"), std::string::npos) << line;
+}
+
 TEST(BridgeThinParts, PartsStayApartAcrossAGap) {
   // The thin rod passes over a third ball without touching it.
   SurfaceMesh surface = make_dumbbell(0.02);

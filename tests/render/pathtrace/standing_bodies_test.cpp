@@ -68,6 +68,23 @@ TEST_P(StandingBodies, KeepTheLightOfAWhiteGround) {
   }
 }
 
+/// The light comes in from below as well: under a plate as above it, and past its rim.
+TEST_P(StandingBodies, AreLitUnderAPlate) {
+  for (const float sole : {-2.0f, -0.5f, 0.0f})
+    for (const float size : {0.4f, 1.2f, 3.0f}) {
+      Scene scene = cube_over_light(GetParam(), sole, 0);
+      scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Vec3f::Ones();
+      scene.meshes[0].appearance.base_color = Vec3f::Ones();
+      scene.ground->appearance = matte(1);
+      scene.ground->size = size;
+      scene.camera.position = Vec3f(1.3f, -2.5f, 2.5f);
+      scene.camera.target = Vec3f(0, sole + 0.3f, 0);
+      RenderParams params = small_params(24, 256);
+      params.max_bounces = 400;
+      EXPECT_NEAR(mean_of(rendered(scene, params).channels[0]), 1, 0.01) << sole << " " << size;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Looks, StandingBodies, testing::Values(Look::Glass, Look::Subsurface),
                          [](const auto& one) { return one.param == Look::Glass ? "Glass" : "Subsurface"; });
 

@@ -1,4 +1,4 @@
-#include "core/tetmesh/tet_quality.h"
+#include "core/tetmesh/quality/tet_quality.h"
 
 #include <algorithm>
 #include <cmath>
