@@ -217,7 +217,7 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   ray_.direction = ShadingFrame(point.geometric_normal).to_world(inward);
   const SampleBlock leaving_numbers = sampler_.numbers(sample_, kLeavingBlocks + static_cast<std::uint32_t>(bounces_));
   SurfacePoint out;
-  if (!walk_out(bsdf.subsurface(), side_of_floor(point), leaving_numbers, out)) return false;
+  if (!walk_out(bsdf.subsurface(), point, leaving_numbers, out)) return false;
   const ShadingFrame frame(out.shading_normal);
   origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light, ray_.time};
   leaving_ = true;
@@ -240,10 +240,13 @@ FloorSide PathIntegrator::side_of_floor(const SurfacePoint& entry) const {
   return entry.lifted.y() < entry.position.y() ? FloorSide::Below : FloorSide::Above;
 }
 
-bool PathIntegrator::walk_out(const Subsurface& inside, FloorSide side, const SampleBlock& numbers, SurfacePoint& out) {
+bool PathIntegrator::walk_out(const Subsurface& inside, const SurfacePoint& entry, const SampleBlock& numbers,
+                              SurfacePoint& out) {
   RandomStream stream(std::uint64_t{std::bit_cast<std::uint32_t>(numbers[kRoulette])} << 32 |
                       std::bit_cast<std::uint32_t>(numbers[kBsdfU]));
   const ScatteringMedium medium = medium_of(inside);
+  const FloorSide side = side_of_floor(entry);
+  SurfacePoint from = entry;
   WalkStart start{ray_, throughput_.cwiseProduct(inside.color), numbers[kSide], numbers[kLength]};
   for (int k = 0; k < kMostGroundMeetings; ++k) {
     WalkExit exit;
@@ -255,11 +258,13 @@ bool PathIntegrator::walk_out(const Subsurface& inside, FloorSide side, const Sa
     out = surface_point(*picture_.meshes[static_cast<std::size_t>(mesh_)], exit.hit, seen);
     const FloorSide now = picture_.rays->side_of_floor(out.position);
     if (now != FloorSide::Near && (now == side || now == FloorSide::Beyond || side == FloorSide::Beyond)) return true;
-    // The floor was in the way: it sends the light back in.
+    // The floor was in the way: it sends the light back in, where the sole is in the floor from there, where the floor
+    // cuts the body from the last place on this side of it, which stands for the cut.
     throughput_ = throughput_.cwiseProduct(ground_at(out.position).albedo());
+    if (now == FloorSide::Near) from = out;
     const Vec3f inward = -cosine_hemisphere(Vec2f(stream.next(), stream.next()));
-    start.ray.origin = out.lowered;
-    start.ray.direction = ShadingFrame(out.geometric_normal).to_world(inward);
+    start.ray.origin = from.lowered;
+    start.ray.direction = ShadingFrame(from.geometric_normal).to_world(inward);
     start.importance = throughput_.cwiseProduct(inside.color);
     start.choice = stream.next();
     start.first = stream.next();

@@ -152,9 +152,9 @@ class PathIntegrator {
   bool scatter_inside(const Bsdf& bsdf, const SurfacePoint& point, const Vec3f& inward, PathScratch& scratch);
   /// The side of the floor that light enters a body on.
   FloorSide side_of_floor(const SurfacePoint& entry) const;
-  /// Walks from ray_ through the body to where light leaves it on the same side of the floor; false where the path
-  /// ends.
-  bool walk_out(const Subsurface& inside, FloorSide side, const SampleBlock& numbers, SurfacePoint& out);
+  /// Walks from ray_, which begins at `entry`, through the body to where light leaves it on the same side of the floor;
+  /// false where the path ends.
+  bool walk_out(const Subsurface& inside, const SurfacePoint& entry, const SampleBlock& numbers, SurfacePoint& out);
   /// What the ray that arrives at `point` came through, and what is behind it.
   void find_media(const Bsdf& bsdf, const SurfacePoint& point);
   bool survives_roulette(float u);

@@ -30,7 +30,7 @@ double share_of_volume(const TetMesh& mesh, const Solid& solid) {
   return volume / std::abs(solid.parts.parts.front().volume);
 }
 
-/// Whether the tetrahedra miss so much of a surface that a loss of volume can come from there. If not, it overlaps
+/// Whether the tetrahedra miss so much of a surface that a loss of volume may come from there. If not, it overlaps
 /// itself: its volume counts twice.
 bool is_cut_off(double loss, const TetMesh& mesh, const Solid& solid, const Threads& threads) {
   double area = 0;
@@ -96,7 +96,8 @@ void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& 
       fmt::format("body '{}': the tetrahedra have {:.0f} % {} volume than {} encloses: {}. A smaller edge or more "
                   "tets follow it better.",
                   name, 100 * std::abs(more), more > 0 ? "more" : "less", part.place(),
-                  more > 0 ? "what is thinner than they are was thickened" : "they cut off what is round or thin"));
+                  more > 0 ? "what is thinner than they are was thickened"
+                           : "they cut off what is round or thin, or it overlaps itself"));
 }
 
 void require_most_of(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "core/base/check.h"
 #include "render/pathtrace/lights/light_set.h"
 
 namespace softreel {
@@ -55,6 +56,7 @@ class LightRequests {
     if (lights_.rectangle(choice.light) == nullptr) return ask_other(receiver, choice, u, share, event);
     while (lamps_.size() <= choice.light) lamps_.emplace_back();
     Lamp& lamp = lamps_[choice.light];
+    CHECK(lamp.samples.count() < kMost);
     lamp.asked[lamp.samples.count()] = {event, share, choice.chance};
     lamp.samples.add(receiver.position, u);
   }

@@ -82,23 +82,26 @@ class RectangleLight {
   bool below(const Vec3f& p, const Vec3f& normal) const;
 
  private:
+  /// A point in the light's axes, from its centre.
+  struct Place {
+    float x, y, height;
+  };
   /// The rectangle seen from a point: edges of its projection in the light's axes and the sphere's angles.
   struct Solid {
-    float x0, x1, y0, y1, z0;  ///< corner coordinates relative to the point; z0 < 0
-    float b0, b1, k, angle;    ///< as in the paper; angle: of the whole light, sr
+    float x0, x1, y0, y1, z0, z2;  ///< corner coordinates relative to the point; z0 < 0; z2: its square
+    float b0, b1, k, angle;        ///< as in the paper; angle: of the whole light, sr
   };
-  /// A sample in the light's axes, from the point to the light.
+  /// A sample, from the point to the light.
   struct Local {
     float x, y, z, distance, pdf;
   };
-  /// x, y, height: of the point, in the light's axes, from its centre.
-  Solid solid_from(float x, float y, float height) const;
-  Local sample_near(float x, float y, float height, float u, float v) const;
-  Local sample_far(float x, float y, float height, float u, float v) const;
-  Local sample_local(float x, float y, float height, float u, float v) const;
-  Local sample_world(float x, float y, float z, float u, float v) const;
+  Place place_of(float x, float y, float z) const;
+  bool is_far(const Place& p) const { return p.x * p.x + p.y * p.y + p.height * p.height > kFar * kFar * radius2_; }
+  Solid solid_from(const Place& p) const;
+  Local sample_near(const Place& p, float u, float v) const;
+  Local sample_far(const Place& p, float u, float v) const;
+  Local to_world(const Local& at) const;
   FlatLamp flat() const { return {center_, normal_, area_, radius2_}; }
-  bool is_far(const Vec3f& p) const { return (center_ - p).squaredNorm() > kFar * kFar * radius2_; }
 
   static constexpr float kFar = 4;  ///< distances over half diagonals; the density then varies by about a quarter
   Vec3f center_, x_, y_, normal_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace softreel {
 
@@ -45,36 +46,61 @@ void SweptGround::cross_wall(const Line& line, Crossing& nearest) const {
   if (up >= center_.y() - overlap_ && up <= shape_.top && reaches(line, distance)) nearest = {distance, kWall};
 }
 
-void SweptGround::cross_bend(const Line& line, Crossing& nearest) const {
+inline SweptGround::CirclePoints SweptGround::meet_circle(const Line& line) const {
   const Vec2f from_center = line.origin - center_, &d = line.direction;
   // |from_center + t d|^2 = r^2. The discriminant by the line's distance from the centre, which cancels less.
   const float a = d.squaredNorm(), b = from_center.dot(d),
               c = from_center.squaredNorm() - shape_.radius * shape_.radius;
   const float moment = d.x() * from_center.y() - d.y() * from_center.x();
   const float discriminant = shape_.radius * shape_.radius * a - moment * moment;
-  if (!(discriminant >= 0)) return;
-  const float root = std::sqrt(discriminant);
-  const auto keep = [&](float distance) {
-    if (!(distance > 0 && distance < nearest.distance)) return;
-    const Vec2f point = line.origin + distance * d;
+  const float root = std::sqrt(std::max(discriminant, 0.0f));
+  // Neither by a difference of what is nearly equal.
+  if (b <= 0) return {c / (root - b), (root - b) / a, discriminant >= 0};
+  return {-(root + b) / a, -c / (root + b), discriminant >= 0};
+}
+
+void SweptGround::cross_bend(const Line& line, Crossing& nearest) const {
+  const CirclePoints circle = meet_circle(line);
+  if (!circle.are_met) return;
+  for (const float distance : {circle.enters, circle.leaves}) {
+    if (!(distance > 0 && distance < nearest.distance)) continue;
+    const Vec2f point = line.origin + distance * line.direction;
     if (point.x() >= center_.x() - overlap_ && point.y() <= center_.y() + overlap_ && reaches(line, distance))
       nearest = {distance, kBend};
+  }
+}
+
+/// Of a line that begins on the hollow side, which is convex: it leaves through one part, or past its rim. That is the
+/// bend where it is neither floor nor wall, however near the line runs to it.
+inline SweptGround::Crossing SweptGround::leaving_crossing(const Line& line, float max_distance) const {
+  const Vec2f &o = line.origin, &d = line.direction;
+  const auto hit_within = [&](float distance, Part part, bool is_within_rim) -> Crossing {
+    const bool is_hit = is_within_rim && distance > 0 && distance < max_distance && reaches(line, distance);
+    return is_hit ? Crossing{distance, part} : Crossing{max_distance, kNothing};
   };
-  // From inside the circle the first root is behind; near it, a difference would not tell its sign.
-  if (c > 0 && b < 0) keep(c / (root - b));
-  if (c < 0 || b < 0) keep(b <= 0 ? (root - b) / a : -c / (root + b));
+  float first = std::numeric_limits<float>::infinity();
+  if (d.y() < 0) {
+    const float distance = (shape_.height - o.y()) / d.y(), along = o.x() + distance * d.x();
+    if (!shape_.has_wall || along <= shape_.floor_end)
+      return hit_within(distance, kFloor, along >= -shape_.half_width && along <= shape_.floor_end);
+    first = distance;
+  }
+  if (!shape_.has_wall || (d.y() >= 0 && d.x() <= 0)) return {max_distance, kNothing};
+  if (d.x() > 0) {
+    const float distance = (back_ - o.x()) / d.x(), up = o.y() + distance * d.y();
+    if (up >= center_.y()) return hit_within(distance, kWall, up <= shape_.top);
+    first = std::min(first, distance);
+  }
+  return hit_within(std::min(meet_circle(line).leaves, first), kBend, true);
 }
 
 /// part: kNothing if it meets none of them.
 inline SweptGround::Crossing SweptGround::nearest_crossing(const Line& line, float max_distance) const {
+  if (is_hollow_at(line.origin)) return leaving_crossing(line, max_distance);
   Crossing nearest{max_distance, kNothing};
-  const bool hollow = is_hollow_at(line.origin);
-  // Up and towards the camera there is no ground.
-  if (hollow && line.direction.y() >= 0 && line.direction.x() <= 0) return nearest;
-  if (!hollow || line.direction.y() < 0) cross_floor(line, nearest);
-  if (!shape_.has_wall || (hollow && nearest.part != kNothing)) return nearest;
-  if (!hollow || line.direction.x() > 0) cross_wall(line, nearest);
-  if (hollow && nearest.part != kNothing) return nearest;
+  cross_floor(line, nearest);
+  if (!shape_.has_wall) return nearest;
+  cross_wall(line, nearest);
   cross_bend(line, nearest);
   return nearest;
 }
@@ -102,9 +128,11 @@ float SweptGround::depth_of_burial(const RayHit& hit, const Ray& ray) const {
 
 FloorSide SweptGround::side_of_floor(const Vec3f& position) const {
   const float along = position.dot(shape_.along);
-  if (along < -shape_.half_width || along > shape_.floor_end ||
-      std::abs(position.dot(shape_.across)) > shape_.half_width)
-    return FloorSide::Beyond;
+  if (along < -shape_.half_width || std::abs(position.dot(shape_.across)) > shape_.half_width) return FloorSide::Beyond;
+  if (along > shape_.floor_end) {
+    if (!shape_.has_wall) return FloorSide::Beyond;
+    return is_hollow_at(in_profile(position)) ? FloorSide::Above : FloorSide::Below;
+  }
   const float height = position.y() - shape_.height;
   if (std::abs(height) < kNear * start_offset(position, 0)) return FloorSide::Near;
   return height > 0 ? FloorSide::Above : FloorSide::Below;

@@ -7,7 +7,8 @@
 
 namespace softreel {
 
-/// Where a point of a body is: Near means as good as in the floor, Beyond that there is no floor over or under it.
+/// Where a point of a body is: Above also before a bend or wall, Below also behind them; Near means as good as in the
+/// floor, Beyond that there is no ground over or under it.
 enum class FloorSide { Above, Near, Below, Beyond };
 
 /// The surface that ground_mesh approximates, by arithmetic: a floor, a quarter of a cylinder and a wall, or the floor
@@ -45,11 +46,19 @@ class SweptGround {
     Part part;
   };
 
+  /// Distances at which a line meets the bend's circle; of one that misses it, where it is nearest.
+  struct CirclePoints {
+    float enters, leaves;
+    bool are_met;
+  };
+
   Line line_of(const Ray& ray) const;
   Vec2f in_profile(const Vec3f& point) const { return {point.dot(shape_.along), point.y()}; }
   bool is_hollow_at(const Vec2f& point) const;
   bool reaches(const Line& line, float distance) const;
   Crossing nearest_crossing(const Line& line, float max_distance) const;
+  Crossing leaving_crossing(const Line& line, float max_distance) const;
+  CirclePoints meet_circle(const Line& line) const;
   void cross_floor(const Line& line, Crossing& nearest) const;
   void cross_wall(const Line& line, Crossing& nearest) const;
   void cross_bend(const Line& line, Crossing& nearest) const;

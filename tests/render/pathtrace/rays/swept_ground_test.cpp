@@ -160,6 +160,18 @@ TEST(SweptGround, HasNoGapBetweenItsParts) {
   const Vec2f floor_end(shape.floor_end, shape.height),
       wall_begin(shape.floor_end + shape.radius, shape.height + shape.radius);
   Rays rays;
+  // From low before the joint of a large one, nearly along the floor.
+  Ground wide = sweep();
+  wide.sweep = 1000;
+  wide.size = 4000;
+  const GroundShape flat = ground_shape(wide, oblique_camera());
+  for (int k = 0; k < 20000; ++k) {
+    const Vec3f low = Vec3f(0, flat.height + 1e-3f, 0) + 900 * flat.along;
+    RayHit hit;
+    const Vec3f target =
+        1000.1f * flat.along + Vec3f(0, flat.height, 0) + 0.2f * rays.next().direction.y() * Vec3f(0, 1, 0);
+    ASSERT_TRUE(SweptGround(flat).intersect({low, (target - low).normalized()}, hit)) << k;
+  }
   for (const Vec2f& joint : {floor_end, wall_begin})
     for (int k = 0; k < 20000; ++k) {
       // Within some units of rounding of the joint, on both sides of it.
