@@ -50,18 +50,8 @@ void PathGroup::scatter() {
     else
       alive_[k]->arrive(hits_[k], scratch_);
   }
-  add_lights();
-  for (const PathEvent& event : scratch_.events) event.path->scatter(event, scratch_);
-  scratch_.events.clear();
   shoot_light_rays();
   drop_ended();
-}
-
-void PathGroup::add_lights() {
-  scratch_.lights.answer([&](std::size_t number, const LightSample& light, bool point_like) {
-    const PathEvent& event = scratch_.events[number];
-    event.path->add_light(event, light, point_like, scratch_);
-  });
 }
 
 void PathGroup::end_last_rays() {

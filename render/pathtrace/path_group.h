@@ -18,13 +18,10 @@ namespace softreel {
 /// Most paths of a group. 8 to 64 of them took the same time.
 inline constexpr std::size_t kGroupPaths = 32;
 static_assert(kGroupPaths >= kRayPacket);
-static_assert(2 * kGroupPaths <= LightRequests::kMost, "an event asks from two points at most");
 
 class PathGroup {
  public:
-  explicit PathGroup(const Picture& picture) : picture_(picture), scratch_(*picture.lights) {
-    paths_.reserve(kGroupPaths);
-  }
+  explicit PathGroup(const Picture& picture) : picture_(picture) { paths_.reserve(kGroupPaths); }
 
   /// Paths that may still be added.
   std::size_t room() const { return kGroupPaths - paths_.size(); }
@@ -47,7 +44,6 @@ class PathGroup {
   void shoot_ray(std::size_t k);  ///< of the k-th one alive
   /// What the alive paths' rays hit, they go on from.
   void scatter();
-  void add_lights();
   void end_last_rays();
   void shoot_light_rays();
   void drop_ended();

@@ -131,71 +131,51 @@ void PathIntegrator::catch_shadow(const RayHit& hit) {
   first_hit_.shadowed = light.shadowed;
 }
 
-template <typename Visit>
-void PathIntegrator::for_light_points(const PathEvent& event, const Visit& visit) const {
+void PathIntegrator::add_direct(const Event& event, const SampleBlock& numbers, PathScratch& scratch) {
   // Most of the noise of glossy bodies is in the highlights of lamps: two points halve it for one more shadow ray.
-  if (bounces_ == 1 && !leaving_ && event.bsdf->has_highlight()) {
-    for (const Vec2f& u : sampler_.two_points(sample_, kTwoLightsBlock)) visit(u, 0.5f);
+  if (bounces_ == 1 && !leaving_ && event.bsdf.has_highlight()) {
+    for (const Vec2f& u : sampler_.two_points(sample_, kTwoLightsBlock))
+      add_lights(event, numbers[kLight], u, 0.5f, scratch);
   } else {
-    visit(Vec2f(event.numbers[kLightU], event.numbers[kLightV]), 1.0f);
+    add_lights(event, numbers[kLight], Vec2f(numbers[kLightU], numbers[kLightV]), 1, scratch);
   }
 }
 
-void PathIntegrator::ask_lights(const PathEvent& event, std::size_t number, LightRequests& lights) const {
-  const Receiver& receiver = origin_.receiver;
-  for_light_points(event, [&](const Vec2f& u, float share) {
-    if (receiver.every_light)
-      lights.ask_every(receiver, event.numbers[kLight], u, share, number);
-    else
-      lights.ask_one(receiver, event.numbers[kLight], u, share, number);
-  });
-}
-
-void PathIntegrator::add_lights(const PathEvent& event, PathScratch& scratch) {
+void PathIntegrator::add_lights(const Event& event, float choice, const Vec2f& u, float share, PathScratch& scratch) {
   const LightSet& lights = *picture_.lights;
-  const Receiver& receiver = origin_.receiver;
-  const float choice = event.numbers[kLight];
-  for_light_points(event, [&](const Vec2f& u, float share) {
-    const std::size_t rays = receiver.every_light ? lights.count() : 1;
-    for (std::size_t k = 0; k < rays; ++k) {
-      LightSample light;
-      bool point_like = false;
-      const bool found = receiver.every_light ? lights.sample_light(k, receiver, choice, u, light, point_like)
-                                              : lights.sample(receiver, choice, u, light, point_like);
-      light.radiance *= share;
-      if (found) add_light(event, light, point_like, scratch);
-    }
-  });
+  const std::size_t rays = origin_.receiver.every_light ? lights.count() : 1;
+  for (std::size_t k = 0; k < rays; ++k) {
+    LightSample light;
+    bool point_like = false;
+    const bool found = origin_.receiver.every_light
+                           ? lights.sample_light(k, origin_.receiver, choice, u, light, point_like)
+                           : lights.sample(origin_.receiver, choice, u, light, point_like);
+    light.radiance *= share;
+    if (found) add_light(event, light, point_like, scratch.light_rays);
+  }
 }
 
-void PathIntegrator::add_light(const PathEvent& event, const LightSample& light, bool point_like,
-                               PathScratch& scratch) {
+void PathIntegrator::add_light(const Event& event, const LightSample& light, bool point_like,
+                               std::vector<LightRay>& light_rays) {
   if (picture_.direct_light == DirectLight::Scattering) return;
   const Vec3f towards = event.frame.to_local(light.direction);
-  const BsdfValue value = leaving_ ? event.bsdf->evaluate_leaving(towards) : event.bsdf->evaluate(event.view, towards);
+  const BsdfValue value = leaving_ ? event.bsdf.evaluate_leaving(towards) : event.bsdf.evaluate(event.view, towards);
   if (value.value.maxCoeff() <= 0) return;
   const bool weighed = !point_like && picture_.direct_light == DirectLight::Weighed;
   const float weight = weighed ? power_heuristic(light.pdf, value.pdf) : 1.0f;
   const bool through = towards.z() < 0;
   const Ray shadow = shadow_ray(event.point, through, light, ray_.time);
   const Vec3f arriving = light.radiance.cwiseProduct(transmittance(through ? behind_ : before_, shadow.max_distance));
-  scratch.light_rays.push_back({shadow, part_of(value.value.cwiseProduct(arriving) * (weight / light.pdf)), number_});
+  light_rays.push_back({shadow, part_of(value.value.cwiseProduct(arriving) * (weight / light.pdf)), number_});
 }
 
-void PathIntegrator::scatter(const PathEvent& event, PathScratch& scratch) {
-  lives_on_ = continues(event, scratch);
-  if (lives_on_ && picture_.has_textures)
-    cone_ = cone_.scattered(travelled_, origin_.pdf, static_cast<float>(picture_.samples));
-}
-
-bool PathIntegrator::continues(const PathEvent& event, PathScratch& scratch) {
-  const SampleBlock& numbers = event.numbers;
+bool PathIntegrator::scatter(const Event& event, const SampleBlock& numbers, PathScratch& scratch) {
   BsdfSample next;
-  if (!event.bsdf->sample(event.view, numbers[kSide], Vec2f(numbers[kBsdfU], numbers[kBsdfV]), next)) return false;
+  if (!event.bsdf.sample(event.view, numbers[kSide], Vec2f(numbers[kBsdfU], numbers[kBsdfV]), next)) return false;
   throughput_ = throughput_.cwiseProduct(next.weight);
   if (!(throughput_.maxCoeff() > 0)) return false;
   follow(next, event.point, event.frame);
-  if (next.subsurface && !scatter_inside(*event.bsdf, event.point, next.direction, scratch)) return false;
+  if (next.subsurface && !scatter_inside(event.bsdf, event.point, next.direction, scratch)) return false;
   return bounces_ < kRouletteStart || survives_roulette(numbers[kRoulette]);
 }
 
@@ -221,7 +201,7 @@ bool PathIntegrator::scatter_inside(const Bsdf& bsdf, const SurfacePoint& point,
   const ShadingFrame frame(out.shading_normal);
   origin_.receiver = {out.lifted, out.shading_normal, false, origin_.receiver.every_light, ray_.time};
   leaving_ = true;
-  add_lights({&bsdf, out, frame, {}, this, leaving_numbers}, scratch);
+  add_direct({bsdf, out, frame, {}}, leaving_numbers, scratch);
   leaving_ = false;
   BsdfSample next;
   next.direction = cosine_hemisphere(Vec2f(leaving_numbers[kBsdfU], leaving_numbers[kBsdfV]));
@@ -295,37 +275,26 @@ void PathIntegrator::arrive(const RayHit& hit, PathScratch& scratch) {
     if (first_hit_.coverage == 0) catch_shadow(hit);
     return;
   }
-  PathEvent& event = scratch.events.emplace_back();
-  if (!begin_event(hit, mesh, event, scratch)) return scratch.events.pop_back();
-  if (scratch.colored && event.bsdf == &*scratch.colored) {
-    if (event.bsdf->has_smooth_part()) add_lights(event, scratch);
-    scatter(event, scratch);
-    return scratch.events.pop_back();
-  }
-  if (event.bsdf->has_smooth_part()) ask_lights(event, scratch.events.size() - 1, scratch.lights);
-}
-
-bool PathIntegrator::begin_event(const RayHit& hit, const MotionMesh& mesh, PathEvent& event, PathScratch& scratch) {
-  SurfacePoint& point = event.point;
-  point = picture_.rays->surface_point(mesh, hit, ray_);
+  const SampleBlock numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(bounces_ + 1));
+  SurfacePoint point = picture_.rays->surface_point(mesh, hit, ray_);
   const Bsdf& bsdf = bsdf_at(hit, point, scratch.colored);
   if (bounces_ == 0) record_first_hit(hit, point, bsdf);
   find_media(bsdf, point);
   throughput_ = throughput_.cwiseProduct(transmittance(before_, hit.distance));
   if (!point.inside && bsdf.emission().maxCoeff() > 0)
     radiance_ += part_of(picture_.lights->emission_weight(ray_, hit, origin_) * bsdf.emission());
-  if (bounces_ == picture_.max_bounces) return false;
+  if (bounces_ == picture_.max_bounces) return;
   ++bounces_;
-  event.bsdf = &bsdf;
-  event.path = this;
-  event.frame = ShadingFrame(point.shading_normal);
-  event.view = bsdf.seen_from(event.frame.to_local(-ray_.direction), point.inside);
-  if (!(event.view.o.z() > 0)) return false;  // a triangle without area has no normal
-  event.numbers = sampler_.numbers(sample_, static_cast<std::uint32_t>(bounces_));
+  const ShadingFrame frame(point.shading_normal);
+  const BsdfView view = bsdf.seen_from(frame.to_local(-ray_.direction), point.inside);
+  if (!(view.o.z() > 0)) return;  // a triangle without area has no normal
   const bool every_light = bounces_ == 1 && picture_.lights->count() <= kFewLights;
   origin_.receiver = {point.lifted, point.shading_normal, bsdf.transmits(), every_light, ray_.time};
-  travelled_ = hit.distance;
-  return true;
+  const Event event{bsdf, point, frame, view};
+  if (bsdf.has_smooth_part()) add_direct(event, numbers, scratch);
+  lives_on_ = scatter(event, numbers, scratch);
+  if (lives_on_ && picture_.has_textures)
+    cone_ = cone_.scattered(hit.distance, origin_.pdf, static_cast<float>(picture_.samples));
 }
 
 }  // namespace softreel

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "render/pathtrace/direct_light.h"
-#include "render/pathtrace/lights/light_requests.h"
 #include "render/pathtrace/lights/light_set.h"
 #include "render/pathtrace/materials/bsdf.h"
 #include "render/pathtrace/materials/colored_surface.h"
@@ -56,22 +55,8 @@ struct FirstHit {
   float unshadowed = 0, shadowed = 0;  ///< as CaughtLight
 };
 
-class PathIntegrator;
-
-/// A place where light is scattered on a path.
-struct PathEvent {
-  const Bsdf* bsdf = nullptr;
-  SurfacePoint point;
-  ShadingFrame frame;
-  BsdfView view;  ///< of `bsdf` from where the path comes; not asked for while light leaves a body
-  PathIntegrator* path = nullptr;
-  SampleBlock numbers;
-};
-
 /// What paths that are traced side by side (path_group.h) share.
 struct PathScratch {
-  explicit PathScratch(const LightSet& light_set) : lights(light_set) {}
-
   /// A ray towards a light, and what its path gains where nothing is in the way.
   struct LightRay {
     Ray ray;
@@ -79,14 +64,11 @@ struct PathScratch {
     std::size_t path;
   };
   std::vector<LightRay> light_rays;
-  std::optional<Bsdf> colored;    ///< of the last hit, if its mesh has a coloring
-  std::vector<PathEvent> events;  ///< of paths that wait for their lights
-  LightRequests lights;           ///< of these, by their places in `events`
+  std::optional<Bsdf> colored;  ///< of the last hit, if its mesh has a coloring
 };
 
 /// One path, from event to event. While lives_on(), its ray is to be shot, and what it meets to be told: miss() or
-/// arrive(); but of its last one, where is_on_last_ray(), end_on_last_ray() finds what counts. Where it arrives it asks
-/// for samples of lights, takes each by add_light(), and then goes on by scatter().
+/// arrive(); but of its last one, where is_on_last_ray(), end_on_last_ray() finds what counts.
 class PathIntegrator {
  public:
   /// number: its place among the paths beside it, for LightRay::path.
@@ -106,13 +88,8 @@ class PathIntegrator {
   bool is_on_last_ray() const { return bounces_ > 0 && bounces_ == picture_.max_bounces && !picture_.has_emission; }
   void end_on_last_ray();
   void miss();
-  /// Leaves an event in `scratch` where light is scattered, with requests for lights; or scatters at once, and leaves
-  /// rays towards lights, where the look of the place does not last.
+  /// Scatters where the ray hit, and leaves rays towards lights in `scratch`.
   void arrive(const RayHit& hit, PathScratch& scratch);
-  /// Towards a sample of a light.
-  void add_light(const PathEvent& event, const LightSample& light, bool point_like, PathScratch& scratch);
-  /// Goes on from the event that it arrived at.
-  void scatter(const PathEvent& event, PathScratch& scratch);
   /// Of a light ray that nothing is in the way of.
   void gain(const Vec3f& part) { radiance_ += part; }
 
@@ -124,8 +101,15 @@ class PathIntegrator {
  private:
   using LightRay = PathScratch::LightRay;
 
-  /// Fills in an event where the ray hit; false where the path ends.
-  bool begin_event(const RayHit& hit, const MotionMesh& mesh, PathEvent& event, PathScratch& scratch);
+  /// A place where light is scattered. view: of `bsdf` from where the path comes; not asked for while light leaves a
+  /// body.
+  struct Event {
+    const Bsdf& bsdf;
+    const SurfacePoint& point;
+    const ShadingFrame& frame;
+    const BsdfView& view;
+  };
+
   const Bsdf& bsdf_at(const RayHit& hit, SurfacePoint& point, std::optional<Bsdf>& colored);
   /// Of the ground, which is the last mesh.
   const Bsdf& ground_at(const Vec3f& position) const;
@@ -136,14 +120,13 @@ class PathIntegrator {
   Vec3f part_of(const Vec3f& radiance) const;
   /// What the camera sees of the shadow catcher: nothing but its alpha.
   void catch_shadow(const RayHit& hit);
-  /// Calls visit(u, share) for the points on lights that an event wants: their shares of the light.
-  template <typename Visit>
-  void for_light_points(const PathEvent& event, const Visit& visit) const;
-  /// Light sampling, of every light or of one of them: to be answered with that of other paths, or at once.
-  void ask_lights(const PathEvent& event, std::size_t number, LightRequests& lights) const;
-  void add_lights(const PathEvent& event, PathScratch& scratch);
+  /// Light sampling.
+  void add_direct(const Event& event, const SampleBlock& numbers, PathScratch& scratch);
+  /// Of every light, or of one of them. share: of the light that counts.
+  void add_lights(const Event& event, float choice, const Vec2f& u, float share, PathScratch& scratch);
+  void add_light(const Event& event, const LightSample& light, bool point_like, std::vector<LightRay>& light_rays);
   /// Continues the path; false where it ends.
-  bool continues(const PathEvent& event, PathScratch& scratch);
+  bool scatter(const Event& event, const SampleBlock& numbers, PathScratch& scratch);
   /// Takes a sampled direction.
   void follow(const BsdfSample& next, const SurfacePoint& point, const ShadingFrame& frame);
   /// From a subsurface sample at `point`, which led `inward` (local to the triangle's own normal), through the body to
@@ -168,7 +151,6 @@ class PathIntegrator {
   Vec3f radiance_ = Vec3f::Zero();
   Vec3f throughput_ = Vec3f::Ones();
   int bounces_ = 0;       ///< scattering events so far
-  float travelled_ = 0;   ///< m, of the ray to the last one
   Index mesh_ = -1;       ///< last one hit
   bool leaving_ = false;  ///< lights are sampled for light that leaves a body
   bool scattered_wide_ = false;

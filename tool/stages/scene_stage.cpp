@@ -286,7 +286,7 @@ void SceneStage::add_tracing(KeyHasher& key, const std::vector<Camera>& camera_m
 }
 
 StageKey SceneStage::trace_key(int frame) const {
-  KeyHasher key("trace 13");
+  KeyHasher key("trace 14");
   const Look look = this->look(frame);
   add_look(key, look);
   add_tracing(key, look.camera_motion);

@@ -115,7 +115,7 @@ float LightSet::importance(std::size_t k, const Receiver& receiver) const {
   return cosine + reach <= 0 ? 0.0f : sun.importance * std::max(cosine, 0.05f);
 }
 
-bool LightSet::may_reach(std::size_t k, const Receiver& receiver) const {
+inline bool LightSet::may_reach(std::size_t k, const Receiver& receiver) const {
   if (k >= lamp_places() || !lamp_tree_.empty()) return importance(k, receiver) > 0;
   return std::visit(
       [&](const auto& light) {
@@ -137,39 +137,38 @@ float LightSet::lamp_probability(std::size_t lamp, const Receiver& receiver) con
   return probability(0, receiver) * lamp_tree_.probability(in_tree(receiver), static_cast<Index>(lamp));
 }
 
-bool LightSet::choose(const Receiver& receiver, float choice, LightChoice& chosen) const {
-  const std::size_t n = count();
-  chosen = {0, 1, choice};
-  if (n < 2) return n == 1 && may_reach(0, receiver);
-  float sum = 0;
-  std::array<float, kKeptImportances> kept;
-  for (std::size_t k = 0; k < n; ++k) {
-    const float part = importance(k, receiver);
-    if (k < kKeptImportances) kept[k] = part;
-    sum += part;
-  }
-  if (!(sum > 0)) return false;
-  float below = 0, start = 0;
-  const float target = choice * sum;
-  for (std::size_t k = 0; k < n; ++k) {
-    const float part = k < kKeptImportances ? kept[k] : importance(k, receiver);
-    if (part <= 0) continue;
-    chosen.light = k;
-    chosen.chance = part / sum;
-    start = below;
-    below += part;
-    if (target < below) break;
-  }
-  chosen.rest = std::clamp((target - start) / (chosen.chance * sum), 0.0f, 0x1.fffffep-1f);
-  return true;
-}
-
 bool LightSet::sample(const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
                       bool& point_like) const {
-  LightChoice chosen;
-  if (!choose(receiver, choice, chosen)) return false;
-  const bool found = sample_from(chosen.light, receiver, chosen.rest, u, sample, point_like);
-  sample.pdf *= chosen.chance;
+  const std::size_t n = count();
+  if (n == 0) return false;
+  std::size_t chosen = 0;
+  float share = 1;
+  if (n > 1) {
+    float sum = 0;
+    std::array<float, kKeptImportances> kept;
+    for (std::size_t k = 0; k < n; ++k) {
+      const float part = importance(k, receiver);
+      if (k < kKeptImportances) kept[k] = part;
+      sum += part;
+    }
+    if (!(sum > 0)) return false;
+    float below = 0, start = 0;
+    const float target = choice * sum;
+    for (std::size_t k = 0; k < n; ++k) {
+      const float part = k < kKeptImportances ? kept[k] : importance(k, receiver);
+      if (part <= 0) continue;
+      chosen = k;
+      share = part / sum;
+      start = below;
+      below += part;
+      if (target < below) break;
+    }
+    choice = std::clamp((target - start) / (share * sum), 0.0f, 0x1.fffffep-1f);
+  } else if (!may_reach(0, receiver)) {
+    return false;
+  }
+  const bool found = sample_from(chosen, receiver, choice, u, sample, point_like);
+  sample.pdf *= share;
   return found && sample.pdf > 0;
 }
 
@@ -191,8 +190,8 @@ inline bool LightSet::sample_lamps(std::size_t k, const Receiver& receiver, floa
   return found;
 }
 
-bool LightSet::sample_from(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
-                           bool& point_like) const {
+inline bool LightSet::sample_from(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u,
+                                  LightSample& sample, bool& point_like) const {
   point_like = false;
   if (k < lamp_places()) return sample_lamps(k, receiver, choice, u, sample);
   if (k < emitter_place()) {

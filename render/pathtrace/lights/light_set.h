@@ -32,13 +32,6 @@ struct RayOrigin {
   Vec3f absorption = Vec3f::Zero();  ///< 1/m, of what the ray goes through
 };
 
-/// One of the lights, as it was chosen for a receiver.
-struct LightChoice {
-  std::size_t light = 0;
-  float chance = 1;  ///< of being chosen
-  float rest = 0;    ///< in [0, 1), what is left of the number that chose it
-};
-
 class LightSet {
  public:
   /// Keeps references to scene.environment and to meshes that emit. Throws input_error for lights without extent or
@@ -55,18 +48,6 @@ class LightSet {
   /// A direction towards light k, as `sample`, but without the choice of k in sample.pdf. choice: picks a part of it.
   bool sample_light(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
                     bool& point_like) const;
-
-  /// The two steps of both. False if no light reaches the receiver.
-  bool choose(const Receiver& receiver, float choice, LightChoice& chosen) const;
-  /// False only where light k sends nothing to a receiver. Quick: a lamp's own sampling finds out whether it shows its
-  /// front.
-  bool may_reach(std::size_t k, const Receiver& receiver) const;
-  bool sample_from(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
-                   bool& point_like) const;
-  /// Light k, if it is a single rectangle.
-  const RectangleLight* rectangle(std::size_t k) const {
-    return k < lamps_.size() && lamp_tree_.empty() ? std::get_if<RectangleLight>(&lamps_[k]) : nullptr;
-  }
 
   /// Radiance of the area lights that a ray passes within `distance`, weighed.
   Vec3f area_lights_along(const Vec3f& position, const Vec3f& direction, float distance, const RayOrigin& origin) const;
@@ -94,6 +75,8 @@ class LightSet {
   std::size_t lamp_places() const { return lamp_tree_.empty() ? lamps_.size() : 1; }
   std::size_t emitter_place() const { return lamp_places() + suns_.size(); }
   std::size_t environment_place() const { return emitter_place() + (emitters_.empty() ? 0 : 1); }
+  bool sample_from(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample,
+                   bool& point_like) const;
   template <typename Visit>
   void for_lamps_near(const Vec3f& position, const Vec3f& direction, float distance, const Visit& visit) const;
   bool sample_lamps(std::size_t k, const Receiver& receiver, float choice, const Vec2f& u, LightSample& sample) const;
@@ -101,6 +84,9 @@ class LightSet {
   /// Rough irradiance of light k at a receiver.
   float importance(std::size_t k, const Receiver& receiver) const;
   float lamp_importance(const Lamp& lamp, const Receiver& receiver) const;
+  /// False only where importance(k, receiver) is 0. Quicker: a lamp's own sampling finds out whether it shows its
+  /// front.
+  bool may_reach(std::size_t k, const Receiver& receiver) const;
   /// Of light k to be sampled at the receiver.
   float probability(std::size_t k, const Receiver& receiver) const;
   /// Of one lamp.

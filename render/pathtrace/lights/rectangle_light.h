@@ -1,9 +1,6 @@
 /// A rectangle that emits from one side, sampled by the solid angle it fills.
 #pragma once
 
-#include <array>
-#include <cstddef>
-
 #include "render/scene/light.h"
 
 namespace softreel {
@@ -28,35 +25,6 @@ struct FlatLamp {
   float importance(const Vec3f& p, float luminance) const;
 };
 
-/// Points that samples of one rectangle are wanted from, and what comes of them; one array for each number, for loops
-/// in vector instructions.
-class RectangleSamples {
- public:
-  static constexpr std::size_t kMost = 64;
-
-  void add(const Vec3f& p, const Vec2f& u) {
-    for (std::size_t c = 0; c < 3; ++c) p_[c][count_] = p[static_cast<Eigen::Index>(c)];
-    u_[count_] = u.x();
-    v_[count_++] = u.y();
-  }
-  std::size_t count() const { return count_; }
-  void clear() { count_ = 0; }
-  /// Of the n-th point, without radiance; pdf is 0 where RectangleLight::sample says false.
-  LightSample sample(std::size_t n) const {
-    return {Vec3f(direction_[0][n], direction_[1][n], direction_[2][n]), distance_[n], Vec3f::Zero(), pdf_[n]};
-  }
-
- private:
-  friend class RectangleLight;
-  using Lanes = std::array<float, kMost>;
-
-  std::size_t count_ = 0;
-  alignas(32) std::array<Lanes, 3> p_{};
-  alignas(32) Lanes u_{}, v_{};
-  alignas(32) std::array<Lanes, 3> direction_{};
-  alignas(32) Lanes distance_{}, pdf_{};
-};
-
 class RectangleLight {
  public:
   /// Throws input_error if the edges are not perpendicular or have no length.
@@ -65,8 +33,6 @@ class RectangleLight {
   /// False if p is behind the light. Near the light: Urena, Fajardo and King, An Area-Preserving Parametrization for
   /// Spherical Rectangles, 2013; far from it, where the two hardly differ, evenly over the area.
   bool sample(const Vec3f& p, const Vec2f& u, LightSample& sample) const;
-  /// The same of many points, to the last bit.
-  void sample(RectangleSamples& samples) const;
   /// Density of sample() from `origin` for the direction that meets the light at `distance`.
   float pdf(const Vec3f& origin, const Vec3f& direction, float distance) const;
   /// Where a ray meets the emitting side before max_distance.
@@ -82,26 +48,14 @@ class RectangleLight {
   bool below(const Vec3f& p, const Vec3f& normal) const;
 
  private:
-  /// A point in the light's axes, from its centre.
-  struct Place {
-    float x, y, height;
-  };
   /// The rectangle seen from a point: edges of its projection in the light's axes and the sphere's angles.
   struct Solid {
-    float x0, x1, y0, y1, z0, z2;  ///< corner coordinates relative to the point; z0 < 0; z2: its square
-    float b0, b1, k, angle;        ///< as in the paper; angle: of the whole light, sr
+    float x0, x1, y0, y1, z0;  ///< corner coordinates relative to the point; z0 < 0
+    float b0, b1, k, angle;    ///< as in the paper; angle: of the whole light, sr
   };
-  /// A sample, from the point to the light.
-  struct Local {
-    float x, y, z, distance, pdf;
-  };
-  Place place_of(float x, float y, float z) const;
-  bool is_far(const Place& p) const { return p.x * p.x + p.y * p.y + p.height * p.height > kFar * kFar * radius2_; }
-  Solid solid_from(const Place& p) const;
-  Local sample_near(const Place& p, float u, float v) const;
-  Local sample_far(const Place& p, float u, float v) const;
-  Local to_world(const Local& at) const;
+  Solid solid_from(const Vec3f& p) const;
   FlatLamp flat() const { return {center_, normal_, area_, radius2_}; }
+  bool is_far(const Vec3f& p) const { return (center_ - p).squaredNorm() > kFar * kFar * radius2_; }
 
   static constexpr float kFar = 4;  ///< distances over half diagonals; the density then varies by about a quarter
   Vec3f center_, x_, y_, normal_;

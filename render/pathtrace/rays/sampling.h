@@ -2,9 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 
 #include "core/base/types.h"
@@ -43,20 +41,15 @@ inline void sin_cos_eighth(float angle, float& sine, float& cosine) {
   cosine = 1.0f + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320))));
 }
 
-/// x, or -x where bit 1 of `bits` is set.
-inline float negated_by_bit_1(float x, std::uint32_t bits) {
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) ^ ((bits & 2) << 30));
-}
-
-/// Sine and cosine of an angle within a few turns; errors below 3e-7. Without branches, for loops of it.
+/// Sine and cosine of an angle within a few turns; errors below 3e-7.
 inline void sin_cos(float angle, float& sine, float& cosine) {
   const float quarters = std::nearbyint(angle * (2 / kPi));
   float s = 0, c = 0;
   sin_cos_eighth((angle - quarters * 1.5703125f) - quarters * 4.83826794897e-4f, s, c);
-  const auto quarter = static_cast<std::uint32_t>(static_cast<std::int32_t>(quarters));
+  const int quarter = static_cast<int>(quarters) & 3;
   const bool swapped = (quarter & 1) != 0;
-  sine = negated_by_bit_1(swapped ? c : s, quarter);
-  cosine = negated_by_bit_1(swapped ? s : c, quarter + 1);
+  sine = (quarter & 2) != 0 ? -(swapped ? c : s) : (swapped ? c : s);
+  cosine = quarter == 1 || quarter == 2 ? -(swapped ? s : c) : (swapped ? s : c);
 }
 
 /// Arc cosine of x in [-1, 1]; errors below 3e-7. Without branches, for loops of it: Abramowitz and Stegun, Handbook of
