@@ -68,16 +68,25 @@ TEST_P(StandingBodies, LetNoLightThroughABackdrop) {
   }
 }
 
+/// Of a white body on white ground in even light; the camera sees nothing but `target` and what is within 0.35 m of it.
+double mean_of_white(Scene scene, const Vec3f& eye, const Vec3f& target) {
+  scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Vec3f::Ones();
+  scene.meshes[0].appearance.base_color = Vec3f::Ones();
+  scene.ground->appearance = matte(1);
+  scene.camera.position = eye;
+  scene.camera.target = target;
+  scene.camera.focal_length_mm = 36 * (target - eye).norm() / 0.7f;
+  scene.camera.sensor_width_mm = 36;
+  RenderParams params = small_params(16, 256);
+  params.max_bounces = 400;
+  return mean_of(rendered(scene, params).channels[0]);
+}
+
 /// In even light a body of albedo 1 looks like the light, whatever part of it the ground hides.
 TEST_P(StandingBodies, KeepTheLightOfAWhiteGround) {
   for (const float sole : {0.0f, -0.1f, 0.1f, -0.5f, -0.9f, -0.98f}) {
-    Scene scene = cube_over_light(GetParam(), sole, 0);
-    scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Vec3f::Ones();
-    scene.meshes[0].appearance.base_color = Vec3f::Ones();
-    scene.ground->appearance = matte(1);
-    RenderParams params = small_params(24, 256);
-    params.max_bounces = 400;
-    EXPECT_NEAR(mean_of(rendered(scene, params).channels[0]), 1, 0.01) << sole;
+    const Vec3f top(0, sole + 1, 0);
+    EXPECT_NEAR(mean_of_white(cube_over_light(GetParam(), sole, 0), top + Vec3f(0.5f, 2, 0.7f), top), 1, 0.01) << sole;
   }
 }
 
@@ -86,15 +95,9 @@ TEST_P(StandingBodies, AreLitUnderAPlate) {
   for (const float sole : {-2.0f, -0.5f, -0.1f, -0.02f, 0.0f})
     for (const float size : {0.4f, 1.2f, 3.0f, 30.0f}) {
       Scene scene = cube_over_light(GetParam(), sole, 0);
-      scene.environment.zenith = scene.environment.horizon = scene.environment.nadir = Vec3f::Ones();
-      scene.meshes[0].appearance.base_color = Vec3f::Ones();
-      scene.ground->appearance = matte(1);
       scene.ground->size = size;
-      scene.camera.position = Vec3f(1.3f, -2.5f, 2.5f);
-      scene.camera.target = Vec3f(0, sole + 0.3f, 0);
-      RenderParams params = small_params(24, 256);
-      params.max_bounces = 400;
-      EXPECT_NEAR(mean_of(rendered(scene, params).channels[0]), 1, 0.01) << sole << " " << size;
+      const Vec3f bottom(0, sole, 0);
+      EXPECT_NEAR(mean_of_white(scene, bottom + Vec3f(0.5f, -2, 0.7f), bottom), 1, 0.01) << sole << " " << size;
     }
 }
 
