@@ -27,9 +27,10 @@ FENCES = [
     (r"<openvdb/", r"(tool/export/level_set_openvdb|tests/tool/export/level_set_test)\.cpp$"),
     (r"<(toml\+\+|nlohmann|CLI)/", r"^(tool|tests/tool)/"),
     (r"<(petsc|cholmod|Eigen/CholmodSupport)", r"^tests/benchmark/rivals/"),
-    (r"<(immintrin|x86intrin)", r"core/sparse/row_product_simd\.h$"),
+    (r"<(immintrin|x86intrin)", r"core/(sparse/row_product|tetmesh/lane_mask)_simd\.h$"),
     (r"<experimental/simd", r"_simd\.cpp$"),
     (r'"core/sparse/row_product_simd\.h', r"(core/multigrid/smoother_rows\.h|tests/core/sparse/block_kernels_test\.cpp)$"),
+    (r'"core/tetmesh/lane_mask_simd\.h', r"core/tetmesh/triangle_tree\.h$"),
     (r'"core/multigrid/smoother_rows\.h', r"core/multigrid/[a-z_]+\.cpp$"),
 ]
 

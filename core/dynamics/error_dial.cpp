@@ -59,6 +59,7 @@ class Dial {
     choice_.chosen.substeps = std::max(1, request_.given_substeps);
     if (request_.dynamic && !choose_steps()) return std::nullopt;
     if (!choose_mesh()) return std::nullopt;
+    find_cancelled();
     if (!choose_tolerance()) return std::nullopt;
     constexpr double kRounding = 1.01;
     choice_.reached = choice_.believed.total() <= kRounding * request_.error;
@@ -113,6 +114,7 @@ class Dial {
       if (!shorter) break;
       steps *= 2;
       differences.push_back(distance(*longer, *shorter));
+      time_motion_ = plus(std::move(*longer), -1, *shorter);
       longer = std::move(shorter);
       choice_.step_order = order_of_steps(differences);
       error = differences.back() / (std::pow(2, choice_.step_order) - 1);
@@ -180,6 +182,18 @@ class Dial {
     choice_.believed.mesh = error / request_.size;
   }
 
+  /// Adds what mesh and steps are off by as the vectors they are.
+  void find_cancelled() {
+    if (time_motion_.empty()) return;
+    ErrorParts& parts = choice_.believed;
+    const SampledMotion mesh = meshes_.expected_motion(static_cast<double>(choice_.chosen.tets));
+    const double mesh_size = motion_size(mesh), time_size = motion_size(time_motion_);
+    if (mesh_size == 0 || time_size == 0) return;
+    const double unit = parts.mesh / mesh_size;  // the curve's, or as much as was measured
+    const double together = unit * motion_size(plus(mesh, parts.time / time_size / unit, time_motion_));
+    parts.cancelled = parts.mesh + parts.time - together;
+  }
+
   /// Tightened until it does on the middle mesh. A residual of equal size hides errors of longer waves on a finer mesh:
   /// they grow as h^-2. False: could not be judged.
   bool choose_tolerance() {
@@ -205,8 +219,9 @@ class Dial {
   const PilotRun& run_;
   DialChoice choice_;
   MeshErrors meshes_;
-  std::int64_t middle_ = 0;  ///< tetrahedra; 0: not found yet
-  double work_ = 0;          ///< of all pilots, tetrahedra times steps of a frame
+  SampledMotion time_motion_;  ///< how much too long steps are off, on the middle mesh, m; only the direction counts
+  std::int64_t middle_ = 0;    ///< tetrahedra; 0: not found yet
+  double work_ = 0;            ///< of all pilots, tetrahedra times steps of a frame
 };
 
 }  // namespace

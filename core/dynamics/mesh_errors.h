@@ -21,6 +21,12 @@ using SampledMotion = std::vector<std::vector<Vec3>>;
 /// shape and not empty.
 double motion_distance(const SampledMotion& a, const SampledMotion& b);
 
+/// a + factor b, point by point.
+SampledMotion plus(SampledMotion a, double factor, const SampledMotion& b);
+
+/// motion_distance from nothing but zeros.
+double motion_size(const SampledMotion& a);
+
 class MeshErrors {
  public:
   /// Fewest meshes that errors can be told from: one more than the unknowns of an order.
@@ -37,6 +43,8 @@ class MeshErrors {
   double measured(std::size_t i) const { return measured_[i]; }
   /// m; of a mesh of so many tetrahedra by the curve.
   double expected(double tets) const;
+  /// The same vector by vector: which way the surface is off, frames x points, m; about that long.
+  SampledMotion expected_motion(double tets) const;
   /// Of how many tetrahedra the curve expects this error (m).
   double tets_for(double error) const;
   /// The mean of the orders that count.
@@ -49,10 +57,17 @@ class MeshErrors {
     double scatter = 0;             ///< sum of squares of what is left over h^2
   };
   OrderFit fit_order(double order) const;
+  /// The weights that make limit and slope of the motions' line over h^order.
+  struct Line {
+    std::vector<double> x, weights;    ///< per mesh: h^order; what its motion counts
+    std::vector<double> limit, slope;  ///< as sums over the motions
+  };
+  Line line_of(double order) const;
 
   std::vector<double> tets_;
   std::vector<SampledMotion> motions_;
   std::vector<double> measured_;
+  std::vector<double> orders_, shares_;  ///< that count, and how much
   double log_slope_ = 0, order_ = 0;
 };
 

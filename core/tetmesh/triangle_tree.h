@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cfloat>
 #include <vector>
 
 #include "core/base/types.h"
 #include "core/mesh/ordered_triangles.h"
+#include "core/tetmesh/lane_mask_simd.h"
 
 namespace softreel {
 
@@ -63,12 +65,23 @@ class TriangleTree {
   struct Node {
     std::array<Lanes, 3> min, max;
   };
-  /// A node, by its level and its number in there; of level -1, a triangle by its place.
-  struct Entry {
-    float squared_distance;
-    std::int32_t level;
-    Index number;
-  };
+  /// What waits: the bits of its squared distance, which are in order as the distances are, above a node, which is its
+  /// level above its number in there, or above the place of a triangle.
+  using Entry = std::uint64_t;
+  static constexpr int kNumberBits = 28;
+  static constexpr std::uint32_t kNumberMask = (1u << kNumberBits) - 1;
+  static constexpr Entry kDistanceMask = Entry{0xffffffff} << 32;
+
+  static Entry entry_of(float squared_distance, std::uint32_t what) {
+    return Entry{std::bit_cast<std::uint32_t>(squared_distance)} << 32 | what;
+  }
+  static float distance_of(Entry entry) { return std::bit_cast<float>(static_cast<std::uint32_t>(entry >> 32)); }
+  static std::uint32_t level_of(Entry entry) { return static_cast<std::uint32_t>(entry) >> kNumberBits; }
+  /// The first child of a node, without its distance.
+  static std::uint32_t first_child(Entry entry) {
+    const std::uint32_t number = kWidth * (static_cast<std::uint32_t>(entry) & kNumberMask), level = level_of(entry);
+    return level > 0 ? (level - 1) << kNumberBits | number : number;
+  }
   /// Triangles halve three times a level; of each level all but one of the children wait.
   static constexpr std::size_t kMostOpen = 11 * (kWidth - 1) + 1;
 
@@ -81,8 +94,10 @@ class TriangleTree {
   static void order_children(TriangleSorter& sorter, Index begin, Index end, Index child_size);
   void find_boxes();
 
-  const Node& node_of(const Entry& entry) const { return nodes_[level_begins_[at(entry.level)] + at(entry.number)]; }
-  Entry root() const { return {0, static_cast<std::int32_t>(level_begins_.size()) - 1, 0}; }
+  const Node& node_of(Entry entry) const {
+    return nodes_[level_begins_[level_of(entry)] + (static_cast<std::uint32_t>(entry) & kNumberMask)];
+  }
+  Entry root() const { return (level_begins_.size() - 1) << kNumberBits; }
   Query query_of(const Vec3& p) const;
   static Lanes squared_distances(const Node& node, const Query& query);
   /// What a box that holds a nearer point is at most away, as boxes measure it.
@@ -138,25 +153,25 @@ TriangleTree::Nearest TriangleTree::search(const Vec3& p, Nearest best, double s
   while (count > 0 && best.squared_distance > squared_enough) {
     const Entry entry = open[--count];
     float reach = reach_of(best.squared_distance);
-    if (!(entry.squared_distance <= reach)) continue;  // not a number: a point that is not finite finds none
+    if (!(distance_of(entry) <= reach)) continue;  // not a number: a point that is not finite finds none
     alignas(32) std::array<float, kWidth> distances;
     Eigen::Map<Lanes, Eigen::AlignedMax>(distances.data()) = squared_distances(node_of(entry), query);
     // The farthest first, so that the nearest is taken next.
     const std::size_t first = count;
-    for (Index k = 0; k < kWidth; ++k) {
-      if (!(distances[at(k)] <= reach)) continue;
+    const std::uint32_t child = first_child(entry);
+    for (unsigned hits = lanes_within(distances.data(), reach); hits != 0; hits &= hits - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(hits));
+      const Entry next = entry_of(distances[k], child + k);
       std::size_t place = count++;
-      for (; place > first && open[place - 1].squared_distance < distances[at(k)]; --place)
-        open[place] = open[place - 1];
-      open[place] = {distances[at(k)], entry.level - 1, kWidth * entry.number + k};
+      for (; place > first && open[place - 1] < (next & kDistanceMask); --place) open[place] = open[place - 1];
+      open[place] = next;
     }
-    if (entry.level > 0) continue;
+    if (level_of(entry) > 0) continue;
     for (; count > first; --count)
-      if (open[count - 1].squared_distance <= reach) {
-        try_triangle(p, open[count - 1].number, best, accept);
+      if (distance_of(open[count - 1]) <= reach) {
+        try_triangle(p, static_cast<Index>(static_cast<std::uint32_t>(open[count - 1])), best, accept);
         reach = reach_of(best.squared_distance);
       }
-    count = first;
   }
   return best;
 }
@@ -170,15 +185,15 @@ void TriangleTree::visit(const Meets& meets, const Visit& visit) const {
   while (count > 0) {
     const Entry entry = open[--count];
     const Node& node = node_of(entry);
-    for (Index k = kWidth; k-- > 0;) {
+    for (std::uint32_t k = kWidth; k-- > 0;) {
       const Vec3 min(node.min[0][k], node.min[1][k], node.min[2][k]),
           max(node.max[0][k], node.max[1][k], node.max[2][k]);
       if (min[0] > max[0] || !meets(Vec3(middle_ + min), Vec3(middle_ + max))) continue;
-      const Index number = kWidth * entry.number + k;
-      if (entry.level > 0)
-        open[count++] = {0, entry.level - 1, number};
+      const std::uint32_t child = first_child(entry) + k;
+      if (level_of(entry) > 0)
+        open[count++] = child;
       else
-        visit(number);
+        visit(static_cast<Index>(child));
     }
   }
 }

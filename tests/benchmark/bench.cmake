@@ -23,8 +23,11 @@ softreel_compile_in_groups(bench_parts 5)
 add_executable(softreel_bench bench_main.cpp)
 target_link_libraries(softreel_bench PRIVATE bench_parts softreel_warnings)
 
-# Its points of scale are processes of their own.
+# Its points of scale are processes of their own, whose memory is the program's: large meshes need huge pages most.
 add_executable(scale_point scale_point.cpp)
-target_link_libraries(scale_point PRIVATE bar_problem softreel_core softreel_warnings fmt::fmt)
+target_link_libraries(scale_point PRIVATE bar_problem softreel_core softreel_huge_pages softreel_warnings fmt::fmt)
+if(NOT SOFTREEL_SANITIZE)
+  target_link_libraries(scale_point PRIVATE TBB::tbbmalloc_proxy)
+endif()
 target_compile_definitions(scale_point PRIVATE SOFTREEL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 add_dependencies(softreel_bench scale_point)

@@ -13,13 +13,16 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give another choice.
-constexpr const char* kDialVersion = "dial 3";
+constexpr const char* kDialVersion = "dial 4";
 
 /// Constraints are looked at so many times a frame for the key, whatever step is chosen.
 constexpr int kLooksPerFrame = 16;
 
 /// Where forces must balance; Newton's next iteration would mostly be far below it.
 constexpr double kLoosestForceTolerance = 1e-4;
+
+/// What cancels is said from this share of the error on.
+constexpr double kTold = 0.02;
 
 bool has_size(const BodySettings& body) {
   return body.tets > 0 || body.edge > 0 || body.error.value > 0 || !body.tetrahedra.empty();
@@ -30,8 +33,8 @@ Bytes pack(const DialChoice& choice) {
   out.put(choice.chosen.tets);
   out.put(choice.chosen.substeps);
   out.put(choice.chosen.tolerance);
-  for (const double part :
-       {choice.believed.mesh, choice.believed.time, choice.believed.algebra, choice.mesh_order, choice.step_order})
+  for (const double part : {choice.believed.mesh, choice.believed.time, choice.believed.algebra,
+                            choice.believed.cancelled, choice.mesh_order, choice.step_order})
     out.put(part);
   out.put(choice.pilots);
   out.put(choice.finest_pilot);
@@ -46,8 +49,8 @@ DialChoice unpack(std::span<const std::uint8_t> bytes) {
   choice.chosen.tets = in.get<std::int64_t>();
   choice.chosen.substeps = in.get<int>();
   choice.chosen.tolerance = in.get<double>();
-  for (double* part :
-       {&choice.believed.mesh, &choice.believed.time, &choice.believed.algebra, &choice.mesh_order, &choice.step_order})
+  for (double* part : {&choice.believed.mesh, &choice.believed.time, &choice.believed.algebra,
+                       &choice.believed.cancelled, &choice.mesh_order, &choice.step_order})
     *part = in.get<double>();
   choice.pilots = in.get<int>();
   choice.finest_pilot = in.get<std::int64_t>();
@@ -161,6 +164,7 @@ std::string describe(const BodyDial& dial, const Shot& shot) {
   std::string text = fmt::format("error {:.2g} % believed, {:.3g} % asked (mesh {:.2g}", 100 * parts.total(),
                                  100 * dial.asked, 100 * parts.mesh);
   if (!is_static(shot)) text += fmt::format(", time {:.2g}", 100 * parts.time);
+  if (parts.cancelled > kTold * parts.total()) text += fmt::format(", of which {:.2g} cancel", 100 * parts.cancelled);
   text += fmt::format(", solver {:.1g}) with {} tetrahedra", 100 * parts.algebra, choice.chosen.tets);
   if (!is_static(shot)) text += fmt::format(", {} steps a frame", choice.chosen.substeps);
   text += fmt::format(", tolerance {:.1g}; from {} pilots of up to {} tetrahedra, order {:.2g} of the mesh",

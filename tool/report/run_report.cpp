@@ -176,6 +176,7 @@ nlohmann::ordered_json to_json(const BodyDial& dial) {
           {"mesh", choice.believed.mesh},
           {"time", choice.believed.time},
           {"solver", choice.believed.algebra},
+          {"cancelled", choice.believed.cancelled},
           {"reached", choice.reached},
           {"tets", choice.chosen.tets},
           {"substeps", choice.chosen.substeps},

@@ -91,6 +91,30 @@ TEST(ErrorDial, PilotsOfAFineRunCostAPartOfIt) {
   }
 }
 
+/// Coarse meshes and long steps are off along the same line: to opposite sides of the truth, or to the same.
+PilotRun on_a_line(double side_of_steps) {
+  return [side_of_steps](const Discretization& cut) -> std::optional<SampledMotion> {
+    const KnownErrors known;
+    const double off = known.mesh_error(cut.tets) + side_of_steps * known.time_error(cut.substeps);
+    return SampledMotion{{Vec3(off, 0, 0), Vec3(0, off, 0)}, {Vec3(1, 2, 3), Vec3(4, 5, 6)}};
+  };
+}
+
+TEST(ErrorDial, AddsErrorsOfMeshAndStepsByTheirDirections) {
+  for (const double side : {-1.0, 1.0}) {
+    const auto choice = turn_dial({.error = 0.05, .most_tets = 100000000}, on_a_line(side));
+    ASSERT_TRUE(choice);
+    const double mesh = KnownErrors{}.mesh_error(choice->chosen.tets);
+    const double time = KnownErrors{}.time_error(choice->chosen.substeps);
+    EXPECT_GT(time, 0.1 * mesh);
+    EXPECT_NEAR(choice->believed.total() / std::abs(mesh + side * time), 1, 0.1) << side;
+  }
+  const auto across = turn_dial({.error = 0.05, .most_tets = 100000000}, KnownErrors{}.pilots());
+  ASSERT_TRUE(across);
+  const ErrorParts& parts = across->believed;
+  EXPECT_NEAR(parts.total() - parts.algebra, std::hypot(parts.mesh, parts.time), 1e-4);
+}
+
 TEST(ErrorDial, SaysWhatTheLimitsLeave) {
   const auto choice = turn_dial({.error = 1e-3, .most_tets = 20000, .most_substeps = 8}, KnownErrors{}.pilots());
   ASSERT_TRUE(choice);
