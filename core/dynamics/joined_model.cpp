@@ -97,6 +97,7 @@ SimulationState part_of(const SimulationState& joined, const ModelOffsets& from,
   part.previous_accelerations = slice(joined.previous_accelerations, from.node, nodes);
   part.previous_error = joined.previous_error;
   part.previous_seconds = joined.previous_seconds;
+  part.constraints = joined.constraints;
   part.troubles = slice(joined.troubles, from.tet, tets);
   return part;
 }

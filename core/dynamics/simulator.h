@@ -97,6 +97,7 @@ struct SimulationState {
   std::vector<Vec3> previous_accelerations{};  ///< before the last step: how the guess changes
   double previous_error = 0;                   ///< error control: of the last step, over the body's size
   double previous_seconds = 0;                 ///< BDF2, Newmark, error control: length of the last step
+  std::uint64_t constraints = 0;               ///< BDF2, Newmark: fingerprint of which held and pulled in the last step
   ElementTroubles troubles = {};               ///< of recovery: empty while all is well
   Grabs grabs = {};                            ///< of pins and pulls that grab
   std::vector<GlueBond> bonds = {};            ///< of the glues that stick, ascending by glue and point
@@ -143,8 +144,8 @@ class Simulator {
 
   /// One step of `seconds` from the present state; constraints are those at `frame`, the step's end. Nodes under a pin
   /// reach their targets exactly. On failure the state is left as it was; pins that contradict each other there are an
-  /// input_error. BDF2's first step is one of Euler; Newmark's starts from the acceleration that the forces give. A
-  /// body at rest is left as it is, to the last bit.
+  /// input_error. BDF2's first step, and its first after a pin or pull began or let go, is one of Euler; Newmark's
+  /// starts from the acceleration that the forces give then. A body at rest is left as it is, to the last bit.
   ///
   /// error_limit: over the body's size. The error is that of the integrator, estimated from the distance between the
   /// step's end and the predictor of x + h v + h^2 a / 2 (Euler: x + h v); what Linearize::Start adds to it for an

@@ -12,10 +12,12 @@
 /// x* is extrapolated (step_pressure_slope).
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/base/fingerprint.h"
 #include "core/dynamics/linear_system.h"
 #include "core/dynamics/step_work.h"
 #include "core/elasticity/tension.h"
@@ -214,6 +216,7 @@ SimulationState advanced(const Simulator::Parts& parts, StepWork& work) {
   next.troubles = std::move(work.troubles);
   next.grabs = parts.state.grabs;
   next.bonds = std::move(work.bonds);
+  next.constraints = work.constraints;
   remember(parts.params, work.step, parts.state, work.pinned.held, work.pinned.targets, next);
   // Of an iterated step; Newmark itself does not need them.
   const bool iterated = linearization(parts.params) == Linearize::Iterated;
@@ -325,6 +328,35 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work) {
   }
 }
 
+/// Of which nodes are held and which pulls are on; never 0. These change where a step begins. Stiffness that is keyed
+/// to nothing does so at the end of one, to which it is early already; bonds of glue come and go too often to begin
+/// anew with each.
+std::uint64_t fingerprint_of(const PinnedNodes& pinned, const std::vector<Pull>& pulls, double frame) {
+  Fingerprint print;
+  for (std::size_t i = 0; i < pinned.held.size(); ++i)
+    if (pinned.held[i] != 0) print.add(static_cast<Index>(i));
+  for (const Pull& pull : pulls) print.add(active_range(pull.active, frame));
+  return print.value() | 1U;
+}
+
+/// Makes the state ready for a first step, and for one after a jump of the forces. What it was before, where it
+/// changed.
+std::optional<SimulationState> begin_anew(Simulator::Parts& parts, const StepWork& work) {
+  SimulationState& state = parts.state;
+  const bool first = lacks_accelerations(parts.params, state);
+  const bool jumps = state.constraints != 0 && state.constraints != work.constraints;
+  if (!first && !jumps) return std::nullopt;
+  std::optional<SimulationState> before = state;
+  std::vector<Vec3> accelerations;
+  if (parts.params.integrator == Integrator::Newmark)
+    accelerations = find_accelerations(parts, work.pinned, work.pulls);
+  if (first)
+    state.accelerations = std::move(accelerations);
+  else
+    forget_before_jump(parts.params, work.pinned.held, accelerations, state);
+  return before;
+}
+
 StepReport Simulator::Parts::step(double frame, double seconds, double error_limit) {
   StepWork work{{}, pins.at(frame, state.grabs.pins), {}, {}, state.rotations, {}, {}, {}, {}, {}, state.troubles};
   StepReport report;
@@ -341,14 +373,16 @@ StepReport Simulator::Parts::step(double frame, double seconds, double error_lim
     state.bonds = std::move(work.bonds);
     return report;
   }
-  const bool first = lacks_accelerations(params, state);
-  if (first) state.accelerations = find_accelerations(*this, work.pinned, work.pulls);
+  work.constraints = params.integrator == Integrator::Euler ? 0 : fingerprint_of(work.pinned, model.pulls, frame);
+  std::optional<SimulationState> before = begin_anew(*this, work);
   begin_step(*this, work, seconds);
   report = solve_step(*this, frame, work);
   if (ends_frame) coarse_lag.usable = false;
   if (report.ok()) accept_or_reject(*this, work, error_limit, report);
-  if (report.ok() && !report.rejected) state.grabs = grabs_at(frame);
-  if (first && (!report.ok() || report.rejected)) state.accelerations.clear();
+  if (report.ok() && !report.rejected)
+    state.grabs = grabs_at(frame);
+  else if (before)
+    state = std::move(*before);
   if (!report.ok()) report.culprit = find_culprit(frame, state.positions, work.right_side);
   return report;
 }

@@ -25,6 +25,7 @@ struct StepWork {
   ElementTroubles troubles = {};  ///< in: of the step before; find_step_rotations counts this one
   double kept_change = -1;        ///< StepSource::kept_change
   std::vector<GlueBond> bonds = {};
+  std::uint64_t constraints = 0;  ///< SimulationState::constraints
 };
 
 /// t f + M (base velocities) - (M + t C) v - t (K + G) (seconds.position v + offsets) for v = velocities + change and t

@@ -85,6 +85,18 @@ bool lacks_accelerations(const SolverParams& params, const SimulationState& stat
   return params.integrator == Integrator::Newmark && state.accelerations.empty();
 }
 
+void forget_before_jump(const SolverParams& params, std::span<const std::uint8_t> held,
+                        std::span<const Vec3> accelerations, SimulationState& state) {
+  if (params.integrator == Integrator::Bdf2) {
+    state.previous_positions.clear();
+    state.previous_velocities.clear();
+  }
+  if (params.integrator != Integrator::Newmark) return;
+  for (std::size_t i = 0; i < accelerations.size(); ++i)
+    if (held[i] == 0) state.accelerations[i] = accelerations[i];
+  state.previous_accelerations.clear();
+}
+
 TimeStep begin_time_step(const SolverParams& params, const SimulationState& state, double h) {
   switch (params.integrator) {
     case Integrator::Bdf2:

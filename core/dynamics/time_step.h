@@ -32,6 +32,11 @@ BackwardDifference backward_difference(const SimulationState& state, double h);
 /// True if the step needs the accelerations at its start, and `state` does not hold them.
 bool lacks_accelerations(const SolverParams& params, const SimulationState& state);
 
+/// What of the state a jump of the forces spoils: BDF2 would keep the velocity of half a step before it for good, and
+/// Newmark the forces of pins that let go.
+void forget_before_jump(const SolverParams& params, std::span<const std::uint8_t> held,
+                        std::span<const Vec3> accelerations, SimulationState& state);
+
 /// What the integrator makes of the state for a step of h seconds. A state without memory gives BDF2 a step of Euler.
 TimeStep begin_time_step(const SolverParams& params, const SimulationState& state, double h);
 

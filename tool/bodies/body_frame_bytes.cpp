@@ -44,6 +44,7 @@ Bytes pack(const BodyFrame& frame) {
   out.put_array(frame.state.previous_accelerations);
   out.put(frame.state.previous_error);
   out.put(frame.state.previous_seconds);
+  out.put(frame.state.constraints);
   out.put_array(frame.state.troubles);
   out.put(static_cast<std::uint64_t>(frame.earlier_steps.size()));
   for (const auto& step : frame.earlier_steps) out.put_array(step);
@@ -69,6 +70,7 @@ BodyFrame unpack_body_frame(std::span<const std::uint8_t> bytes) {
   frame.state.previous_accelerations = in.get_array<Vec3>();
   frame.state.previous_error = in.get<double>();
   frame.state.previous_seconds = in.get<double>();
+  frame.state.constraints = in.get<std::uint64_t>();
   frame.state.troubles = in.get_array<ElementTrouble>();
   frame.earlier_steps.resize(in.get<std::uint64_t>());
   for (auto& step : frame.earlier_steps) step = in.get_array<Vec3>();

@@ -58,8 +58,8 @@ const Table<ShotSettings>& settings_table() {
           "values there, and what is active from the first frame on is not active yet.")
         .add("start", &S::start,
              choice<StartState>({{"rest", StartState::Rest}, {"equilibrium", StartState::Equilibrium}}), "",
-             "Begin undeformed, or sagged into balance under what acts at the first frame: gravity, pins, pulls and "
-             "glue.")
+             "Begin undeformed, or sagged into balance under what acts at the first frame, or the first of preroll: "
+             "gravity, pins, pulls and glue.")
         .add("mode", &S::mode,
              choice<SimulationMode>({{"dynamic", SimulationMode::Dynamic}, {"static", SimulationMode::Static}}), "",
              "\"dynamic\" swings and flies; \"static\" is in balance at each frame.")

@@ -82,7 +82,8 @@ void add_time_stepping(Table<Shot>& t) {
        choice<Integrator>({{"euler", Integrator::Euler}, {"bdf2", Integrator::Bdf2}, {"newmark", Integrator::Newmark}}),
        "",
        "dynamic: \"euler\" forgives most and damps most, \"bdf2\" damps what is fast only, \"newmark\" keeps "
-       "energy (at its defaults).")
+       "the energy of what the steps are short enough for (at its defaults); undamped and faster than that, a body "
+       "may gain energy.")
       .add("newmark_beta", of_newmark(&NewmarkParams::beta), number({0.25, 1}), "",
            "\"newmark\": share of the last acceleration in the way, halved. At least newmark_gamma / 2.")
       .add("newmark_gamma", of_newmark(&NewmarkParams::gamma), number({0.5, 1}), "",

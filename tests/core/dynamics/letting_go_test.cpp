@@ -1,0 +1,89 @@
+/// What integrators make of the jump of the forces where a pin lets go: the body flies on as it flew.
+#include <gtest/gtest.h>
+
+#include "tests/core/dynamics/dynamics_support.h"
+
+namespace softreel {
+namespace {
+
+using testing::Bench;
+using testing::body_model;
+
+constexpr double kFramesPerSecond = 24, kLetGo = 6;
+const Vec3 kSpeed(2, 1, 0);  // m/s
+
+/// A bar, all of whose surface is carried along until frame 6.
+BodyModel carried_bar(const std::array<Index, 3>& cells, const ElementMaterial& material, const Vec3& gravity) {
+  const Vec3 size(0.8, 0.2, 0.2);
+  BodyModel model = body_model(testing::kuhn_bar(cells, size), material);
+  model.gravity = gravity;
+  Pin pin = testing::make_pin(testing::select_nodes(
+      model.mesh, [&](const Vec3& p) { return ((p.array() < 1e-9) || (p.array() > size.array() - 1e-9)).any(); }));
+  Transform far;
+  far.translate = 2 * kSpeed;
+  pin.track = {{{0, {}, Ease::Linear}, {2 * kFramesPerSecond, far, Ease::Linear}}};
+  pin.active = {{0, kLetGo}};
+  model.pins = {pin};
+  return model;
+}
+
+void run_to(Bench& bench, double from, double to, int steps_per_frame) {
+  const int steps = static_cast<int>((to - from) * steps_per_frame);
+  for (int k = 1; k <= steps; ++k) {
+    const StepReport report =
+        bench.simulator.step(from + static_cast<double>(k) / steps_per_frame, 1 / (kFramesPerSecond * steps_per_frame));
+    ASSERT_TRUE(report.ok()) << report.culprit;
+  }
+}
+
+/// The inside, which is not held, rings when the pins begin to move: pins push it to and fro when they let go.
+TEST(LettingGo, GivesNoPush) {
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark})
+    for (const int steps : {1, 4, 16}) {
+      SolverParams params = testing::exact_params();
+      params.integrator = integrator;
+      Bench bench(carried_bar({8, 4, 4}, {1e6, 0.3, 1000, 0, 0}, Vec3::Zero()), params);
+      run_to(bench, 0, kLetGo, steps);
+      const Vec3 before = bench.simulator.measure().linear_momentum;
+      ASSERT_GT(before.norm(), 30);
+      run_to(bench, kLetGo, kLetGo + 3, steps);
+      EXPECT_LT((bench.simulator.measure().linear_momentum - before).norm(), 1e-6 * before.norm())
+          << static_cast<int>(integrator) << ", " << steps << " steps a frame";
+    }
+}
+
+/// Between the throw and where it is half a second later, of a bar whose nodes are all held until then, m.
+double error_of_throw(Integrator integrator, int steps) {
+  SolverParams params = testing::exact_params();
+  params.integrator = integrator;
+  Bench bench(carried_bar({4, 1, 1}, {1e5, 0.3, 1000, 0, 0}, Vec3(0, -9.81, 0)), params);
+  const Vec3 start = bench.simulator.state().positions.front();
+  run_to(bench, 0, kLetGo + 12, steps);
+  const double flown = 12 / kFramesPerSecond, time = kLetGo / kFramesPerSecond + flown;
+  const Vec3 exact = start + time * kSpeed - Vec3(0, 9.81 * flown * flown / 2, 0);
+  return (bench.simulator.state().positions.front() - exact).norm();
+}
+
+TEST(LettingGo, LeavesIntegratorsTheirOrder) {
+  EXPECT_LT(error_of_throw(Integrator::Newmark, 1), 1e-9);
+  EXPECT_NEAR(error_of_throw(Integrator::Euler, 2) / error_of_throw(Integrator::Euler, 4), 2, 0.1);
+  EXPECT_NEAR(error_of_throw(Integrator::Bdf2, 2) / error_of_throw(Integrator::Bdf2, 4), 4, 0.2);
+}
+
+/// A step that is not taken leaves what the state remembers.
+TEST(LettingGo, IsForgottenWithARejectedStep) {
+  for (const Integrator integrator : {Integrator::Bdf2, Integrator::Newmark}) {
+    SolverParams params = testing::exact_params();
+    params.integrator = integrator;
+    Bench bench(carried_bar({8, 4, 4}, {1e6, 0.3, 1000, 0, 0}, Vec3(0, -9.81, 0)), params);
+    run_to(bench, 0, kLetGo, 4);
+    const SimulationState before = bench.simulator.state();
+    ASSERT_TRUE(bench.simulator.step(kLetGo + 0.25, 1 / (4 * kFramesPerSecond), 1e-15).rejected);
+    EXPECT_EQ(bench.simulator.state().accelerations, before.accelerations);
+    EXPECT_EQ(bench.simulator.state().previous_positions, before.previous_positions);
+    EXPECT_EQ(bench.simulator.state().constraints, before.constraints);
+  }
+}
+
+}  // namespace
+}  // namespace softreel
