@@ -170,14 +170,14 @@ TEST(FrameSteps, DoNotJumpOverAPullThatIsShorterThanAStep) {
 }
 
 TEST(FrameSteps, AreTheSameWhereConstraintsChangeAtFrames) {
-  // Were steps to end there anyway, nothing is to be cut.
+  // Were steps to end there anyway, nothing is to be cut. (By Euler: BDF2 begins anew where a pull is switched.)
   BodyModel model = jolted_bar(true);
   model.pulls[0].active = {{2, 3}};
   model.pulls[0].track = {{{1, model.pulls[0].track.keys[0].value, Ease::Constant}, {3, {}, Ease::Constant}}};
   BodyModel always = model;
   always.pulls[0].active.clear();
   always.pulls[0].stiffness = {{{1, 0, Ease::Constant}, {2, 500, Ease::Constant}, {4, 0, Ease::Constant}}};
-  const SolverParams params = controlled(Integrator::Bdf2, 1e-3);
+  const SolverParams params = controlled(Integrator::Euler, 1e-3);
   EXPECT_EQ(simulate(model, params, 3).positions, simulate(always, params, 3).positions);
 }
 
