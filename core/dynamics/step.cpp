@@ -335,7 +335,7 @@ std::uint64_t fingerprint_of(const PinnedNodes& pinned, const std::vector<Pull>&
   Fingerprint print;
   for (std::size_t i = 0; i < pinned.held.size(); ++i)
     if (pinned.held[i] != 0) print.add(static_cast<Index>(i));
-  for (const Pull& pull : pulls) print.add(active_range(pull.active, frame));
+  for (const Pull& pull : pulls) print.add(std::uint64_t{is_active(pull.active, frame)});
   return print.value() | 1U;
 }
 

@@ -7,7 +7,7 @@ namespace softreel {
 
 /// Each is written to the EXR under the names in PixelChannels.
 enum class PictureChannel {
-  Albedo,      ///< share of light that the first surface sends back
+  Albedo,      ///< base colour of the first surface; glass, coat and sheen are not in it
   Normal,      ///< of the first surface, in the world, facing the camera
   Depth,       ///< m along the ray to the first surface
   Position,    ///< m, of the first surface in the world
