@@ -69,10 +69,10 @@ double SkyModel::Perez::at(double cos_zenith, double angle_to_sun) const {
 
 SkyModel::SkyModel(const Daylight& day) {
   const double t = static_cast<double>(day.turbidity), elevation = static_cast<double>(day.elevation);
-  if (!(t >= 1.7 && t <= 10) || !(elevation >= 0 && elevation <= 0.5 * pi + 1e-6))
+  if (!(t >= 2 && t <= 10) || !(elevation >= 0 && elevation <= 0.5 * pi + 1e-6))
     throw input_error(
         fmt::format("A sky of turbidity {} with the sun {} degrees above the horizon is outside of the model.\n"
-                    "  Accepted: 1.7 to 10; 0 to 90 degrees. Correct the sky, or use an environment image.",
+                    "  Accepted: 2 to 10; 0 to 90 degrees. Correct the sky, or use an environment image.",
                     t, elevation * 180 / pi));
   perez_ = {
       Perez{0.1787 * t - 1.4630, -0.3554 * t + 0.4275, -0.0227 * t + 5.3251, 0.1206 * t - 2.5771, -0.0670 * t + 0.3703},

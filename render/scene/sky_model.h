@@ -17,7 +17,7 @@ namespace softreel {
 struct Daylight {
   float elevation = 0.8f;      ///< of the sun above the horizon, 0 to pi/2
   float azimuth = 0.6f;        ///< about the vertical; 0: the sun is in front, over +z, pi/2: over +x
-  float turbidity = 3;         ///< 1.7 to 10: 2 very clear, 3 clear, 6 hazy
+  float turbidity = 3;         ///< 2 to 10: 2 very clear, 3 clear, 6 hazy
   float ground_albedo = 0.2f;  ///< of what is below the horizon
 
   friend bool operator==(const Daylight&, const Daylight&) = default;

@@ -35,9 +35,12 @@ std::int64_t first_step_from(double frame, int ticks) {
 std::vector<std::string> find_missed_ranges(const Shot& shot, const std::string& name,
                                             const std::vector<FrameRange>& active, bool grab) {
   std::vector<std::string> lines;
-  const int ticks = ticks_per_frame(shot), start = first_simulated_frame(shot);
+  const int ticks = ticks_per_frame(shot), start = first_simulated_frame(shot), last = shot.settings.last_frame;
+  const auto is_outside = [&](const FrameRange& range) { return range.last < start || range.first > last; };
+  if (!active.empty() && std::all_of(active.begin(), active.end(), is_outside))
+    return {fmt::format("{} never holds: its active is out of the simulated frames, {} to {}.", name, start, last)};
   for (const FrameRange& range : active) {
-    if (ticks == 0 || range.last < start || range.first > shot.settings.last_frame) continue;
+    if (ticks == 0 || is_outside(range)) continue;
     const std::int64_t first = first_step_from(std::max<double>(range.first, start), ticks);
     const bool is_static = shot.settings.mode == SimulationMode::Static ||
                            (first == std::int64_t{start} * ticks && shot.settings.start == StartState::Equilibrium);

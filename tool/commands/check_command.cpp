@@ -15,6 +15,7 @@ int run_check(const ShotOptions& options) {
   Session session(silent);
   ShotRun run(session.shot(), session.context(), DialUse::LookUp);
   SceneStage scenes(run);
+  scenes.require_looks();
   scenes.load_images();
   RunReport report = session.report("check", run);
   if (options.json) {

@@ -120,7 +120,7 @@ const Table<SkySettings>& sky_table() {
         "10 kcd/m^2, so that a sky "
         "is "
         "about 0.5.";
-    t.add("turbidity", &S::turbidity, keyed(number({1.7, 10, false}), ""), "", "Haze: 2 very clear, 3 clear, 6 hazy.")
+    t.add("turbidity", &S::turbidity, keyed(number({2, 10, false}), ""), "", "Haze: 2 very clear, 3 clear, 6 hazy.")
         .add("elevation_deg", &S::elevation_deg, keyed(number({0, 90, false}), "degrees"), "degrees",
              "Of the sun above the horizon.")
         .add("azimuth_deg", &S::azimuth_deg, keyed(number(in_single(kAnyNumber)), "degrees"), "degrees",

@@ -14,6 +14,7 @@ namespace {
 void check_camera(const Place& place, const TomlValue& value, CameraSettings& camera) {
   if (value.find("mode") == nullptr && (value.find("position") != nullptr || value.find("target") != nullptr))
     camera.mode = CameraMode::Place;
+  camera.origin = value.origin;
   if (camera.mode != CameraMode::Place) return;
   for (const auto* field : {"position", "target"})
     if (value.find(field) == nullptr)
@@ -78,7 +79,7 @@ const Table<CameraSettings>& camera_table() {
              "frame: turns the camera about the vertical; 0 is the front.")
         .add("elevation_deg", &C::elevation_deg, number({-90, 90, false}), "degrees", "frame: lifts the camera.")
         .add("margin", &C::margin, number(in_single(kPositive)), "",
-             "frame: size of the picture over that of the bodies.")
+             "frame: size of the picture over that of the box around the bodies.")
         .add("shift", &C::shift, vector_of<Vec3>(in_single(kAnyNumber)), "heights of the bodies",
              "frame: moves what is looked at.")
         .add("position", &C::position, keyed(vector_of<Vec3>(in_single(kAnyNumber)), "m"), "m",

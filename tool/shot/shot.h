@@ -198,6 +198,7 @@ struct CameraSettings {
   Track<double> focus_distance;   ///< empty: at the target
   double sensor_width_mm = 36;
   double f_number = 0;
+  Origin origin;
 };
 
 enum class LightKind { Area, Disk, Sphere, Sun };

@@ -7,6 +7,7 @@
 #include "core/base/check.h"
 #include "core/base/error.h"
 #include "render/image/image_io.h"
+#include "tool/bodies/simulate_key.h"
 #include "tool/cache/atomic_file.h"
 #include "tool/stages/appearance_key.h"
 
@@ -104,8 +105,12 @@ Camera SceneStage::camera(double frame) const {
 }
 
 Camera SceneStage::next_camera(int frame) const {
-  const RenderParams& params = run_.shot().render.params;
-  return next_camera_at(run_.shot().camera, frame, rest_bounds_, static_cast<double>(params.width) / params.height);
+  const Shot& shot = run_.shot();
+  const RenderParams& params = shot.render.params;
+  // As ShotRun leads surfaces on.
+  const bool leads_on = frame == shot.settings.last_frame && frame > first_simulated_frame(shot);
+  return (leads_on ? camera_led_on : next_camera_at)(shot.camera, frame, rest_bounds_,
+                                                     static_cast<double>(params.width) / params.height);
 }
 
 std::vector<Camera> SceneStage::camera_motion(int frame) const {
@@ -124,6 +129,11 @@ SceneStage::Look SceneStage::look(int frame) const {
             {}};
   for (std::size_t b = 0; b < run_.body_count(); ++b) look.appearances.push_back(appearance(b, frame));
   return look;
+}
+
+void SceneStage::require_looks() const {
+  const ShotSettings& settings = run_.shot().settings;
+  for (int frame = settings.first_frame; frame <= settings.last_frame; ++frame) look(frame);
 }
 
 void SceneStage::load_images() {

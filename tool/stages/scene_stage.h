@@ -24,6 +24,8 @@ class SceneStage {
   /// but does not decode them before a scene needs it. run is kept by reference. Throws input_error.
   explicit SceneStage(ShotRun& run);
 
+  /// Throws input_error where keys take the camera or a light to where there is no picture, at any frame of the shot.
+  void require_looks() const;
   /// Decodes the environment image and the textures that are not decoded yet. Throws input_error.
   void load_images();
   /// The scene of a frame; loads the images first. Keys of lights and materials are at their values.

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+
 namespace softreel {
 
 namespace {
@@ -13,6 +17,12 @@ Vec3f upright(const Camera& camera) {
   const Vec3f forward = (camera.target - camera.position).normalized();
   if (!(forward.cross(Vec3f::UnitY()).norm() <= 1e-3f)) return Vec3f::UnitY();
   return Vec3f(0, 0, forward.y() < 0 ? -1.0f : 1.0f);
+}
+
+/// One frame on at the pace since the frame before.
+Vec3 led_on(const Track<Vec3>& track, double frame) {
+  const Vec3 now = track.at(frame);
+  return now + (now - track.at(frame - 1));
 }
 
 }  // namespace
@@ -27,6 +37,11 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
   if (settings.mode == CameraMode::Place) {
     camera.position = settings.position.at(frame).cast<float>();
     camera.target = settings.target.at(frame).cast<float>();
+    if (!((camera.target - camera.position).norm() > 0))
+      throw input_error(
+          fmt::format("{}: the camera stands in its target at frame {}.\n"
+                      "  Accepted: keys that keep the two apart. Move camera.position or camera.target.",
+                      to_string(settings.origin), frame));
     camera.up = upright(camera);
     return camera;
   }
@@ -82,6 +97,19 @@ std::vector<Camera> camera_motion_at(const CameraSettings& settings, const Rende
 
 Camera next_camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
   return camera_at(settings, last_cut(settings, frame, frame + 1) ? frame : frame + 1, rest_bounds, aspect);
+}
+
+Camera camera_led_on(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
+  CameraSettings led = settings;
+  if (settings.mode == CameraMode::Place) {
+    led.position = constant_track(led_on(settings.position, frame));
+    led.target = constant_track(led_on(settings.target, frame));
+    if (led.position.at(0) == led.target.at(0)) led = settings;
+  }
+  // By its ratio, as a zoom goes and stays above nothing.
+  const double focal = settings.focal_length_mm.at(frame);
+  led.focal_length_mm = constant_track(focal * focal / settings.focal_length_mm.at(frame - 1));
+  return camera_at(last_cut(settings, frame - 1, frame) ? settings : led, frame, rest_bounds, aspect);
 }
 
 }  // namespace softreel

@@ -10,7 +10,8 @@
 
 namespace softreel {
 
-/// The camera of a shot at a frame. rest_bounds: of all bodies at rest, for CameraMode::Frame.
+/// The camera of a shot at a frame. rest_bounds: of all bodies at rest, for CameraMode::Frame. Throws input_error where
+/// keys take it to its target.
 Camera camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
 
 /// The last frame in (after, until] at which the camera jumps, as keys of ease "constant" do; none: it moves or stands.
@@ -24,5 +25,9 @@ std::vector<Camera> camera_motion_at(const CameraSettings& settings, const Rende
 /// The camera of the frame after this one, for motion vectors. It stays where a cut lies between them: what the next
 /// shot shows has not moved there.
 Camera next_camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
+
+/// The same after the last frame, where bodies go on as they came from the frame before: so does the camera, whatever
+/// its keys say. It stays after a cut, and where it would go on into its target.
+Camera camera_led_on(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
 
 }  // namespace softreel

@@ -54,6 +54,11 @@ TEST(SkyModel, IsBrightestAroundTheSunAndBlueAwayFromIt) {
   EXPECT_GT(zenith.z(), 1.5f * zenith.x());
 }
 
+TEST(SkyModel, BrightensWithHaze) {
+  EXPECT_LT(sky_irradiance(SkyModel(daylight(45, 2))), sky_irradiance(SkyModel(daylight(45, 3))));
+  EXPECT_LT(sky_irradiance(SkyModel(daylight(45, 3))), sky_irradiance(SkyModel(daylight(45, 6))));
+}
+
 TEST(SkyModel, TheSunReddensAndFadesTowardsTheHorizon) {
   double before = 1e9, hue_before = 1e9;
   for (const double elevation : {90.0, 45.0, 20.0, 8.0, 3.0}) {
@@ -89,6 +94,7 @@ TEST(SkyModel, GroundBelowSendsBackItsShareOfSunAndSky) {
 TEST(SkyModel, RefusesWhatItWasNotFittedTo) {
   EXPECT_THROW(SkyModel(daylight(-1, 3)), Error);
   EXPECT_THROW(SkyModel(daylight(30, 1)), Error);
+  EXPECT_THROW(SkyModel(daylight(30, 1.9f)), Error) << "the fit divides by what is nothing near 1.7";
   EXPECT_THROW(SkyModel(daylight(30, 12)), Error);
 }
 

@@ -34,7 +34,9 @@ TEST(HeldRanges, NameARangeBetweenTheEndsOfSteps) {
 }
 
 TEST(HeldRanges, AreOfSimulatedFramesOnly) {
-  EXPECT_EQ(said(dynamic_shot(1), {{0.2, 0.8}, {24.2, 24.8}}), "");
+  EXPECT_EQ(said(dynamic_shot(1), {{0.2, 0.8}, {2, 3}, {24.2, 24.8}}), "");
+  EXPECT_NE(said(dynamic_shot(1), {{0.2, 0.8}, {30, 40}}).find("out of the simulated frames, 1 to 24"),
+            std::string::npos);
   Shot preroll = dynamic_shot(1);
   preroll.settings.preroll = 10;
   EXPECT_NE(said(preroll, {{0.2, 0.8}}), "");

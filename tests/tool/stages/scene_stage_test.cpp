@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
 #include "render/scene/camera_frame.h"
 
 namespace softreel {
@@ -122,6 +123,32 @@ TEST(NextCameraAt, StaysBeforeACut) {
   const CameraSettings settings = camera_with_cut();
   EXPECT_EQ(next_camera_at(settings, 49, {}, 1), camera_at(settings, 49, {}, 1));
   EXPECT_EQ(next_camera_at(settings, 50, {}, 1), camera_at(settings, 51, {}, 1));
+}
+
+TEST(CameraLedOn, GoesOnAsFromTheFrameBefore) {
+  CameraSettings settings = camera_with_cut();
+  settings.focal_length_mm.keys = {{50, 50.0, Ease::Linear}, {60, 60.0, Ease::Linear}};
+  const Camera led = camera_led_on(settings, 60, {}, 1);
+  EXPECT_EQ(led.position, Vec3f(21, 0, 4)) << "its keys end at 20";
+  EXPECT_EQ(led.target, Vec3f(9, 0, 0));
+  EXPECT_FLOAT_EQ(led.focal_length_mm, 60.0f * 60 / 59);
+  EXPECT_EQ(camera_led_on(settings, 50, {}, 1), camera_at(settings, 50, {}, 1)) << "a cut is no pace";
+  settings.target.keys = {{1, Vec3(21, 0, 4), Ease::Linear}};
+  EXPECT_EQ(camera_led_on(settings, 60, {}, 1).position, Vec3f(20, 0, 4)) << "not into its target";
+}
+
+TEST(CameraAt, IsRefusedInItsTarget) {
+  CameraSettings settings = camera_with_cut();
+  settings.target.keys = {{1, Vec3(15, 0, 4), Ease::Constant}};
+  settings.origin = {"shot.toml", 7, 1};
+  EXPECT_NO_THROW(camera_at(settings, 54, {}, 1));
+  try {
+    camera_at(settings, 55, {}, 1);
+    FAIL() << "it looks nowhere";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("shot.toml:7:1"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("frame 55"), std::string::npos) << error.what();
+  }
 }
 
 TEST(LastCut, IsOfEveryTrackThatThePictureShows) {
