@@ -1,6 +1,6 @@
 // Plays a GLB in three.js and prints the positions of its first vertices at every frame, as JSON.
 //   node read_glb.mjs '{"glb": FILE, "fps": 24, "frames": [1, 2], "vertices": 100}'
-// Frame k is at second k / fps. Positions are those of the mesh, and in the world that its nodes place it in.
+// The first of the frames is at second 0. Positions are those of the mesh, and in the world that its nodes place it in.
 import { readFileSync } from 'node:fs';
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
@@ -24,7 +24,7 @@ action.play();
 
 const frames = {};
 for (const frame of settings.frames) {
-  mixer.setTime(frame / settings.fps);
+  mixer.setTime((frame - settings.frames[0]) / settings.fps);
   gltf.scene.updateMatrixWorld(true);
   const mine = Array.from({ length: settings.vertices }, (_, v) => mesh.getVertexPosition(v, new THREE.Vector3()));
   const world = mine.map((p) => p.clone().applyMatrix4(mesh.matrixWorld));

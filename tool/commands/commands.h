@@ -1,6 +1,7 @@
 /// The subcommands of softreel. Each takes its parsed options, throws Error, and returns the exit status of its work.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,17 @@ int run_simulate(const ShotOptions& options);
 
 /// Prints what run_render would do, with the memory and time it should take.
 int run_plan(const ShotOptions& options);
+
+/// What a command would make of bodies at some frames, beside pictures.
+struct PlannedWork {
+  std::vector<int> frames;         ///< at which they are needed, from the first on
+  std::vector<std::string> lines;  ///< for people
+  int missing = 0, of = 0;         ///< files; of = 0: none are made
+  int outdated = 0;                ///< files that would be removed
+};
+
+/// The same of another command than run_render.
+int run_plan(const ShotOptions& options, const std::function<PlannedWork(ShotRun&, Outputs&)>& find_work);
 
 struct ExportOptions {
   ShotOptions shot;

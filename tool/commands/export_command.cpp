@@ -6,6 +6,7 @@
 
 #include "core/base/check.h"
 #include "core/base/timer.h"
+#include "tool/bodies/shot_inputs.h"
 #include "tool/commands/commands.h"
 #include "tool/export/body_samples.h"
 #include "tool/export/export_look.h"
@@ -139,12 +140,34 @@ class BodyExport {
   std::vector<ElementMaterial> materials_;  ///< per tetrahedron; empty until a format needs them
 };
 
+PlannedWork planned(std::vector<ExportSeries> series, const std::string& folder) {
+  PlannedWork work;
+  for (ExportSeries& one : series) {
+    one.require_free_paths();
+    const SeriesPlan plan = one.plan();
+    work.frames.insert(work.frames.end(), plan.frames.begin(), plan.frames.end());
+    work.missing += plan.missing;
+    work.of += plan.of;
+    work.outdated += plan.outdated;
+    work.lines.push_back(
+        fmt::format("export {} of {} {} files: {}", plan.missing, plan.of, one.format().name, one.made_line()));
+  }
+  if (work.outdated > 0) work.lines.push_back(fmt::format("replace {} outdated files in {}", work.outdated, folder));
+  return work;
+}
+
 }  // namespace
 
 int run_export(const ExportOptions& options) {
   const std::vector<const ExportFormat*> formats = chosen_formats(options.wishes);
   ExportSettings settings = export_settings(options.wishes, formats);
-  if (options.shot.dry_run) return run_plan(options.shot);
+  if (options.shot.dry_run)
+    return run_plan(options.shot, [&](ShotRun& run, Outputs& outputs) {
+      if (!options.wishes.fps) settings.fps = run.shot().settings.fps;
+      outputs.protect(files_read(run.shot()));
+      const FrameSpan span = parse_frames(options.shot.frames, run.shot());
+      return planned(make_series(formats, settings, {span.first, span.last}, run, outputs), outputs.folder());
+    });
   Session session(options.shot);
   const Shot& shot = session.shot();
   if (!options.wishes.fps) settings.fps = shot.settings.fps;
@@ -154,6 +177,7 @@ int run_export(const ExportOptions& options) {
   session.prepare(outputs, run);
   outputs.note_simulation();
   std::vector<ExportSeries> series = make_series(formats, settings, frames, run, outputs);
+  for (const ExportSeries& one : series) one.require_free_paths();
   remove_outdated(series, session.context().log);
   warn_of_lost_looks(formats, shot, session.context().log);
   std::vector<BodyExport> bodies;

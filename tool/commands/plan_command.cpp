@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -24,12 +25,15 @@ namespace {
 
 /// Measured on 2 cores at 2.6 GHz with the shots of presets/ (README, "How fast"); a plan is right within a factor of
 /// two or so there, and scales with the machine elsewhere.
-constexpr double kStepSecondsPerTet = 4e-6;    ///< one dynamic step, two threads
-constexpr double kStaticStepsPerFrame = 25;    ///< a static frame costs about this many steps
-constexpr double kFillSecondsPerTet = 1.5e-5;  ///< distance, lattice, embedding
-constexpr double kPathsPerSecond = 2e6;        ///< two threads
-constexpr double kBytesPerTet = 1200;          ///< matrix, hierarchy, state
-constexpr double kBytesPerTriangle = 700;      ///< surface, normals, trees
+constexpr double kStepSecondsPerTet = 3.2e-7;  ///< one dynamic step with one solve, two threads
+constexpr double kStaticStepsPerFrame = 6.5;   ///< a static frame costs about this many steps
+constexpr double kIteratedSteps = 11;          ///< and a step that is iterated this many
+/// Distance, fit and embedding are of the surface; lattices, which graded ones are grown to, of the tetrahedra.
+constexpr double kFillSecondsPerTriangle = 2.6e-6, kFillSecondsPerTet = 2e-6, kFillSecondsPerGradedTet = 1e-5;
+constexpr double kPathsPerSecond = 2e6;    ///< two threads
+constexpr double kDeepPaths = 2;           ///< what a path costs more where light goes into bodies
+constexpr double kBytesPerTet = 1200;      ///< matrix, hierarchy, state
+constexpr double kBytesPerTriangle = 700;  ///< surface, normals, trees
 constexpr double kBytesPerPixel = 48;
 /// Of textures, with their halvings, and of surroundings, with what their light is drawn by.
 constexpr double kBytesPerTexel = 16;
@@ -59,6 +63,27 @@ double expected_tets(const BodySettings& body, const LoadedBody& loaded) {
     return kTetsPerSquaredError * area / std::pow(body.error.in_meters(size.norm()), 2);
   }
   return 12 * size.prod() / (body.edge * body.edge * body.edge);
+}
+
+double fill_seconds(const BodySettings& body, const LoadedBody& loaded, double tets) {
+  if (loaded.given) return 0;
+  return kFillSecondsPerTriangle * static_cast<double>(loaded.surface.triangles.size()) +
+         (body.graded || body.error.value > 0 ? kFillSecondsPerGradedTet : kFillSecondsPerTet) * tets;
+}
+
+/// Steps of one solve that a frame costs.
+double steps_per_frame(const Shot& shot, const SolverParams& solver) {
+  if (shot.settings.mode == SimulationMode::Static) return kStaticStepsPerFrame;
+  return solver.substeps * (linearization(solver) == Linearize::Iterated ? kIteratedSteps : 1);
+}
+
+/// What a path costs, of one that stays outside of bodies.
+double path_cost(const Shot& shot) {
+  const auto lets_light_in = [&](const BodySettings& body) {
+    const Appearance& look = shot.materials.at(body.material).appearance;
+    return look.transmission > 0 || look.subsurface > 0;
+  };
+  return std::any_of(shot.bodies.begin(), shot.bodies.end(), lets_light_in) ? kDeepPaths : 1;
 }
 
 /// Indices of the bodies that are simulated as one: those that glue joins, and each of the others.
@@ -92,20 +117,27 @@ void add_whole(const ShotRun& run, const std::vector<std::size_t>& bodies, const
     tets += own;
     plan.triangles += static_cast<double>(run.loaded(b).surface.triangles.size());
     if (!needed.empty() && !run.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key()))
-      plan.fill_seconds += own * kFillSecondsPerTet / speed;
+      plan.fill_seconds += fill_seconds(run.settings(b), run.loaded(b), own) / speed;
   }
-  const bool is_static = run.shot().settings.mode == SimulationMode::Static;
-  const double steps = is_static ? kStaticStepsPerFrame : run.resolved(bodies.front()).solver.substeps;
+  const double steps = steps_per_frame(run.shot(), run.resolved(bodies.front()).solver);
   const int simulated = frames_to_simulate(run, bodies.front(), needed);
   plan.tets += tets;
   plan.simulated += simulated;
   plan.simulate_seconds += simulated * steps * tets * kStepSecondsPerTet / speed;
 }
 
-/// Of memory, beside the bodies: of the program, the pictures, what they show, and ffmpeg where it encodes them.
-double other_bytes(const SceneStage& scenes, const Shot& shot, const FrameSpan& frames, bool traces) {
+void add_simulation(const ShotRun& run, const std::vector<int>& needed, int last, double speed, Plan& plan) {
+  for (const std::vector<std::size_t>& bodies : simulated_wholes(run.shot())) {
+    add_whole(run, bodies, needed, speed, plan);
+    plan.simulated_of += last - first_simulated_frame(run.shot()) + 1;
+  }
+  plan.bytes = plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle + kBytesOfProgram;
+}
+
+/// Of memory: of the pictures, what they show, and ffmpeg where it encodes them.
+double picture_bytes(const SceneStage& scenes, const Shot& shot, const FrameSpan& frames, bool traces) {
   const double pixels = static_cast<double>(shot.render.params.width) * shot.render.params.height;
-  return kBytesOfProgram + pixels * kBytesPerPixel + (traces ? scenes.count_texels() * kBytesPerTexel : 0) +
+  return pixels * kBytesPerPixel + (traces ? scenes.count_texels() * kBytesPerTexel : 0) +
          (makes_movie(shot, frames) ? kEncoderBytes + pixels * kEncoderBytesPerPixel : 0);
 }
 
@@ -122,14 +154,11 @@ Plan make_plan(const ShotRun& run, const SceneStage& scenes, const PictureStage&
       needed.push_back(frame);
   }
   plan.traced = static_cast<int>(needed.size());
-  for (const std::vector<std::size_t>& bodies : simulated_wholes(shot)) {
-    add_whole(run, bodies, needed, speed, plan);
-    plan.simulated_of += frames.last - first_simulated_frame(shot) + 1;
-  }
+  add_simulation(run, needed, frames.last, speed, plan);
   const double pixels = static_cast<double>(shot.render.params.width) * shot.render.params.height;
-  plan.render_seconds = plan.traced * pixels * shot.render.params.samples / (kPathsPerSecond * speed);
-  plan.bytes = plan.tets * kBytesPerTet + plan.triangles * kBytesPerTriangle +
-               other_bytes(scenes, shot, frames, plan.traced > 0);
+  const double paths = plan.traced * pixels * shot.render.params.samples;
+  plan.render_seconds = paths * path_cost(shot) / (kPathsPerSecond * speed);
+  plan.bytes += picture_bytes(scenes, shot, frames, plan.traced > 0);
   return plan;
 }
 
@@ -158,26 +187,56 @@ bool has_the_rest(const Session& session, const Outputs& outputs) {
   return std::filesystem::is_regular_file(outputs.path("report.json"), none);
 }
 
-void print_json(const Session& session, const Plan& plan) {
+nlohmann::ordered_json begin_json(const Session& session, const Plan& plan) {
   const Shot& shot = session.shot();
-  const FrameSpan& frames = session.frames();
-  const nlohmann::ordered_json json{{"command", "plan"},
-                                    {"shot", shot.path},
-                                    {"name", shot.settings.name},
-                                    {"output", shot.output.directory},
-                                    {"frames", {frames.first, frames.last}},
-                                    {"complete", plan.complete},
-                                    {"tetrahedra", plan.tets},
-                                    {"triangles", plan.triangles},
-                                    {"simulate", {{"missing", plan.simulated}, {"of", plan.simulated_of}}},
-                                    {"trace", {{"missing", plan.traced}, {"there", plan.kept}, {"of", frames.count()}}},
-                                    {"expected",
-                                     {{"bytes", plan.bytes},
-                                      {"seconds", plan.fill_seconds + plan.simulate_seconds + plan.render_seconds},
-                                      {"fill_seconds", plan.fill_seconds},
-                                      {"simulate_seconds", plan.simulate_seconds},
-                                      {"render_seconds", plan.render_seconds}}}};
-  std::printf("%s\n", json_text(json).c_str());
+  return {{"command", "plan"},
+          {"shot", shot.path},
+          {"name", shot.settings.name},
+          {"output", shot.output.directory},
+          {"frames", {session.frames().first, session.frames().last}},
+          {"complete", plan.complete},
+          {"tetrahedra", plan.tets},
+          {"triangles", plan.triangles},
+          {"simulate", {{"missing", plan.simulated}, {"of", plan.simulated_of}}}};
+}
+
+nlohmann::ordered_json expected_json(const Plan& plan) {
+  return {{"bytes", plan.bytes},
+          {"seconds", plan.fill_seconds + plan.simulate_seconds + plan.render_seconds},
+          {"fill_seconds", plan.fill_seconds},
+          {"simulate_seconds", plan.simulate_seconds},
+          {"render_seconds", plan.render_seconds}};
+}
+
+/// What is to be done before any file is made.
+void print_bodies(const Session& session, const ShotRun& run, const Plan& plan) {
+  const Shot& shot = session.shot();
+  std::printf("%s: would do (nothing is written):\n", shot.settings.name.c_str());
+  for (std::size_t b = 0; b < run.body_count(); ++b) {
+    if (shot.dial.is_on())
+      std::printf("  %s: %s\n", shot.bodies[b].name.c_str(),
+                  run.dial(b) ? describe(*run.dial(b), shot).c_str()
+                              : "turn the error dial by short coarse runs; what follows is of default sizes");
+    const bool cached = session.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key());
+    std::printf("  fill %s: %zu triangles, about %.0f tetrahedra%s\n", shot.bodies[b].name.c_str(),
+                run.loaded(b).surface.triangles.size(), expected_tets(run.settings(b), run.loaded(b)),
+                cached ? " (in the cache already)" : "");
+  }
+  std::printf(
+      "  simulate %d of %d body frames (%s), the others are stored or not needed\n", plan.simulated, plan.simulated_of,
+      shot.settings.mode == SimulationMode::Static
+          ? "static"
+          : fmt::format("{} sub-steps{}", run.resolved(0).solver.substeps, shot.solver.step_error > 0 ? " or more" : "")
+                .c_str());
+}
+
+/// render: of the pictures; empty where none are made.
+void print_expected(const Plan& plan, const std::string& render) {
+  std::printf("  expected, within a factor of two: memory %s; time %s (fill %s, simulate %s%s)\n",
+              format_bytes(plan.bytes).c_str(),
+              format_duration(plan.fill_seconds + plan.simulate_seconds + plan.render_seconds).c_str(),
+              format_duration(plan.fill_seconds).c_str(), format_duration(plan.simulate_seconds).c_str(),
+              render.c_str());
 }
 
 }  // namespace
@@ -196,34 +255,41 @@ int run_plan(const ShotOptions& options) {
   plan.complete =
       plan.kept == frames.count() && has_the_rest(session, outputs) && !has_outdated(session, pictures, outputs);
   if (options.json) {
-    print_json(session, plan);
+    nlohmann::ordered_json json = begin_json(session, plan);
+    json["trace"] = {{"missing", plan.traced}, {"there", plan.kept}, {"of", frames.count()}};
+    json["expected"] = expected_json(plan);
+    std::printf("%s\n", json_text(json).c_str());
     return 0;
   }
-  std::printf("%s: would do (nothing is written):\n", shot.settings.name.c_str());
-  for (std::size_t b = 0; b < run.body_count(); ++b) {
-    if (shot.dial.is_on())
-      std::printf("  %s: %s\n", shot.bodies[b].name.c_str(),
-                  run.dial(b) ? describe(*run.dial(b), shot).c_str()
-                              : "turn the error dial by short coarse runs; what follows is of default sizes");
-    const bool cached = session.context().cache.has(kTetrahedraStage, run.simulation(b).filled_key());
-    std::printf("  fill %s: %zu triangles, about %.0f tetrahedra%s\n", shot.bodies[b].name.c_str(),
-                run.loaded(b).surface.triangles.size(), expected_tets(run.settings(b), run.loaded(b)),
-                cached ? " (in the cache already)" : "");
-  }
-  std::printf(
-      "  simulate %d of %d body frames (%s), the others are stored or not needed\n", plan.simulated, plan.simulated_of,
-      shot.settings.mode == SimulationMode::Static
-          ? "static"
-          : fmt::format("{} sub-steps{}", run.resolved(0).solver.substeps, shot.solver.step_error > 0 ? " or more" : "")
-                .c_str());
+  print_bodies(session, run, plan);
   std::printf("  trace %d of %d frames of %d x %d at %d samples to %s\n", plan.traced, frames.count(),
               shot.render.params.width, shot.render.params.height, shot.render.params.samples,
               shot.output.directory.c_str());
-  std::printf("  expected, within a factor of two: memory %s; time %s (fill %s, simulate %s, render %s)\n",
-              format_bytes(plan.bytes).c_str(),
-              format_duration(plan.fill_seconds + plan.simulate_seconds + plan.render_seconds).c_str(),
-              format_duration(plan.fill_seconds).c_str(), format_duration(plan.simulate_seconds).c_str(),
-              format_duration(plan.render_seconds).c_str());
+  print_expected(plan, ", render " + format_duration(plan.render_seconds));
+  return 0;
+}
+
+int run_plan(const ShotOptions& options, const std::function<PlannedWork(ShotRun&, Outputs&)>& find_work) {
+  ShotOptions silent = options;
+  silent.quiet = true;
+  const Session session(silent);
+  const Shot& shot = session.shot();
+  ShotRun run(shot, session.context(), DialUse::LookUp);
+  Outputs outputs(shot.output.directory, shot.settings.name, session.context().log);
+  const PlannedWork work = find_work(run, outputs);
+  Plan plan;
+  add_simulation(run, work.frames, session.frames().last, session.context().threads.count() / 2.0, plan);
+  plan.complete = work.missing == 0 && work.outdated == 0 && plan.simulated == 0;
+  if (options.json) {
+    nlohmann::ordered_json json = begin_json(session, plan);
+    if (work.of > 0) json["files"] = {{"missing", work.missing}, {"of", work.of}, {"outdated", work.outdated}};
+    json["expected"] = expected_json(plan);
+    std::printf("%s\n", json_text(json).c_str());
+    return 0;
+  }
+  print_bodies(session, run, plan);
+  for (const std::string& line : work.lines) std::printf("  %s\n", line.c_str());
+  print_expected(plan, "");
   return 0;
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/timer.h"
+#include "tool/bodies/shot_inputs.h"
 #include "tool/bodies/simulate_key.h"
 #include "tool/cache/atomic_file.h"
 #include "tool/shot/shot_load.h"
@@ -93,6 +94,7 @@ CacheUse& Session::prepare(Outputs& outputs, ShotRun& run) {
   require_writable(outputs.folder());
   sweep_temporaries(outputs.folder());
   outputs.set_settings(snapshot(run));
+  outputs.protect(files_read(run.shot()));
   outputs_ = &outputs;
   use_.emplace(cache_, shot_.path, shot_.output.directory);
   use_->claim(items(run, outputs));

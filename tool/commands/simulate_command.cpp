@@ -6,8 +6,20 @@
 
 namespace softreel {
 
+namespace {
+
+PlannedWork all_frames(const FrameSpan& frames) {
+  PlannedWork work;
+  for (int frame = frames.first; frame <= frames.last; ++frame) work.frames.push_back(frame);
+  return work;
+}
+
+}  // namespace
+
 int run_simulate(const ShotOptions& options) {
-  if (options.dry_run) return run_plan(options);
+  if (options.dry_run)
+    return run_plan(options,
+                    [&](ShotRun& run, Outputs&) { return all_frames(parse_frames(options.frames, run.shot())); });
   Session session(options, Cache::Storing::Required);
   const FrameSpan frames = session.frames();
   ShotRun run(session.shot(), session.context());

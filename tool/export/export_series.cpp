@@ -10,7 +10,9 @@
 #include "tool/cache/byte_hasher.h"
 #include "tool/export/body_samples.h"
 #include "tool/export/export_colors.h"
+#include "tool/export/usda_look.h"
 #include "tool/stages/appearance_key.h"
+#include "tool/stages/shot_camera.h"
 
 namespace softreel {
 namespace {
@@ -82,6 +84,29 @@ ExportSeries::~ExportSeries() = default;
 
 bool ExportSeries::has(std::size_t body) const {
   return std::find(bodies_.begin(), bodies_.end(), body) != bodies_.end();
+}
+
+void ExportSeries::require_free_paths() const {
+  for (int sample = 0; sample < (one_file() ? 1 : times_.count); ++sample) outputs_.require_free(path(sample));
+  if (!format_.index_extension.empty()) outputs_.require_free(outputs_.path(stem() + format_.index_extension));
+}
+
+SeriesPlan ExportSeries::plan() {
+  SeriesPlan plan;
+  plan.of = one_file() ? 1 : times_.count;
+  OutputState state = OutputState::Missing;
+  for (int sample = 0; sample < times_.count; ++sample) {
+    if (sample < plan.of) {
+      state = outputs_.claimed_state(path(sample), key(sample));
+      if (state != OutputState::Done) ++plan.missing;
+      if (state == OutputState::Stale || state == OutputState::Unknown) ++plan.outdated;
+    }
+    if (state == OutputState::Done) continue;
+    const SimulatedFrame simulated = simulated_frame(frames_, times_.per_frame, sample);
+    if (simulated.is_between) plan.frames.push_back(simulated.frame - 1);
+    plan.frames.push_back(simulated.frame);
+  }
+  return plan;
 }
 
 bool ExportSeries::wants(int sample) {
@@ -200,10 +225,22 @@ StageKey ExportSeries::sample_key(int sample) const {
   }
   for (const StageKey& look : look_keys_) key.add(look);
   if (format_.needs_camera) {
-    add(key, camera_(times_.frame(sample)));
+    const double time = times_.frame(sample), before = times_.frame(std::max(sample - 1, 0));
+    add(key, camera_(time));
     key.add(aspect());
+    if (const std::optional<double> cut = last_cut(run_.shot().camera, before, time)) {
+      key.add("cut").add(*cut);
+      add(key, camera_(*cut));
+      add(key, camera_(*cut - kBeforeCut));
+    }
   }
   if (format_.has_voxel) key.add(settings_.voxel);
+  if (format_.names_pictures)
+    for (const std::size_t body : bodies_) {
+      TextureSettings textures = run_.shot().materials.at(run_.settings(body).material).textures;
+      for (const std::string* path : textures.paths())
+        if (!path->empty()) key.add(usda_asset(*path, outputs_.folder()));
+    }
   return key.key();
 }
 
@@ -227,6 +264,7 @@ ExportTarget ExportSeries::target(int sample) const {
   for (const std::size_t body : bodies_) target.bodies.push_back(export_body(settings_, run_, body, times_.first));
   target.times = one_file() ? times_ : SampleTimes{times_.frame(sample), 1, 1};
   target.camera = camera_;
+  target.camera_cut = [&run = run_](double after, double until) { return last_cut(run.shot().camera, after, until); };
   target.aspect = aspect();
   target.sink = [growing = growing_.get()](std::span<const std::uint8_t> bytes) {
     growing->checksum.add(bytes);

@@ -26,6 +26,13 @@ struct SeriesCounts {
   double saved_seconds = 0;
 };
 
+/// What is left to do for a series.
+struct SeriesPlan {
+  std::vector<int> frames;  ///< of the simulation, that samples are made of
+  int missing = 0, of = 0;  ///< files
+  int outdated = 0;         ///< files that would be removed or replaced
+};
+
 /// Samples come in order of time; a file under construction has no name before it is whole.
 class ExportSeries {
  public:
@@ -37,8 +44,12 @@ class ExportSeries {
 
   const ExportFormat& format() const { return format_; }
   bool has(std::size_t body) const;
+  /// Throws input_error if any of its files is one that the shot reads.
+  void require_free_paths() const;
   /// False if the file that holds this sample is there, made of the same.
   bool wants(int sample);
+  /// What finishing it would take and remove, without reading a file of it.
+  SeriesPlan plan();
   /// A wanted sample; sample.body counts in the run. seconds: what making it took.
   void append(int sample, const ExportSample& data, double seconds);
   /// After the last sample.

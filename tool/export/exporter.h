@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -77,6 +78,10 @@ struct ExportBody {
 /// Takes the next bytes of a file; they are valid during the call only.
 using ExportSink = std::function<void(std::span<const std::uint8_t>)>;
 
+/// Frames before a cut of the camera at which it still is where it was, in files whose values go straight from one time
+/// to the next.
+inline constexpr double kBeforeCut = 1e-3;
+
 /// What one file is made of.
 struct ExportTarget {
   ExportSettings settings;
@@ -84,7 +89,9 @@ struct ExportTarget {
   std::vector<ExportBody> bodies;
   SampleTimes times;
   std::function<Camera(double frame)> camera;  ///< the shot's, in the scene (m, Y up)
-  double aspect = 1;                           ///< width of the picture over its height
+  /// The last frame in (after, until] at which it jumps, if there is one.
+  std::function<std::optional<double>(double after, double until)> camera_cut;
+  double aspect = 1;  ///< width of the picture over its height
   ExportSink sink;
   const Threads* threads = nullptr;  ///< for formats that compute; they outlive the writer
   std::string folder;                ///< where scratch files may lie (tool/export/scratch_file.h)
@@ -130,6 +137,7 @@ struct ExportFormat {
   bool has_units = true;       ///< false: the format itself fixes metres and Y up
   bool has_voxel = false;      ///< cuts space into voxels, of the size asked for
   bool needs_look = false, needs_camera = false, needs_tets = false;
+  bool names_pictures = false;  ///< by where they lie from the file's folder (usda_asset)
 
   /// Throws input_error for a target that cannot be said in the format.
   std::function<std::unique_ptr<ExportWriter>(ExportTarget)> make;

@@ -110,8 +110,7 @@ class GlbFile : public ExportWriter {
         split_(split_at_seams(*body().mesh)),
         look_(body(), !split_.textures.empty()),
         buffer_(target_.folder) {
-    require_float_times("glb", target_.times, target_.settings.fps);
-    require_positive_times();
+    require_float_times("glb", clip_times(), target_.settings.fps);
     require_texture_coordinates(fmt::format("{}.{}.glb", target_.shot, body().name), *body().mesh,
                                 std::numeric_limits<float>::max());
     require_size();
@@ -145,13 +144,8 @@ class GlbFile : public ExportWriter {
   const ExportBody& body() const { return target_.bodies[0]; }
   std::size_t vertices() const { return split_.sources.size(); }
 
-  void require_positive_times() const {
-    if (target_.times.first >= 0) return;
-    throw input_error(
-        fmt::format("glb: frame {} lies before 0, where glTF has no times.\n"
-                    "  Accepted: frames from 0. Export with --frames 0-{}, or move shot.frames.",
-                    target_.times.first, target_.times.frame(target_.times.count - 1)));
-  }
+  /// A clip begins at second 0: a player would show its first key from there to frame 1001, say, in every turn.
+  SampleTimes clip_times() const { return {0, target_.times.per_frame, target_.times.count}; }
 
   /// What the file needs at least; the header is at most as large as what its samples may leave.
   void require_size() const {
@@ -224,7 +218,7 @@ class GlbFile : public ExportWriter {
   Json write_animation() {
     const auto samples = static_cast<std::size_t>(target_.times.count);
     std::vector<float> times;
-    for (int k = 0; k < target_.times.count; ++k) times.push_back(seconds_of(target_.times, k, target_.settings.fps));
+    for (int k = 0; k < target_.times.count; ++k) times.push_back(seconds_of(clip_times(), k, target_.settings.fps));
     const int input = buffer_.add(times, "SCALAR", 1, 0);
     buffer_.add_bounds(times, 1);
     const int output = buffer_.add_rows(samples * samples, [&](ScratchFile& bytes) {
@@ -239,7 +233,8 @@ class GlbFile : public ExportWriter {
     Json sampler{{"input", input}, {"interpolation", "LINEAR"}, {"output", output}};
     return {{"name", target_.shot},
             {"channels", Json::array({std::move(channel)})},
-            {"samplers", Json::array({std::move(sampler)})}};
+            {"samplers", Json::array({std::move(sampler)})},
+            {"extras", {{"first_frame", target_.times.first}, {"frames_per_second", target_.settings.fps}}}};
   }
 
   /// An animated node may have no matrix; a placement is a turn, one scale and a translation.
@@ -295,7 +290,7 @@ ExportFormat glb_format() {
   format.name = "glb";
   format.about = "binary glTF, a file a body: samples as morph targets with their animation; material, textures";
   format.file_per = FilePer::Body;
-  format.version = 3;
+  format.version = 4;
   format.has_normals = true;
   format.has_seconds = true;
   format.has_transform = true;

@@ -137,19 +137,33 @@ class UsdaFile : public ExportWriter {
           usda_vectors(values, 3));
   }
 
-  /// An attribute of the camera: a value where it stays, else one at each sample. `text` makes that of one.
+  /// The samples' times, and beside a cut one more just before it, as values go straight from one time to the next.
+  std::vector<double> camera_times() const {
+    std::vector<double> times;
+    for (int k = 0; k < target_.times.count; ++k) {
+      const double time = target_.times.frame(k);
+      if (k > 0) {
+        const std::optional<double> cut = target_.camera_cut(times.back(), time);
+        if (cut && *cut - kBeforeCut > times.back()) times.push_back(*cut - kBeforeCut);
+        if (cut && *cut < time) times.push_back(*cut);
+      }
+      times.push_back(time);
+    }
+    return times;
+  }
+
+  /// An attribute of the camera: a value where it stays, else one at each time. `text` makes that of one.
   template <typename Text>
   void write_keyed(const char* attribute, const Text& text) {
-    const auto value = [&](int sample) { return fmt::format("{}", text(target_.camera(target_.times.frame(sample)))); };
-    const std::string first = value(0);
-    int same = 1;
-    while (same < target_.times.count && value(same) == first) ++same;
-    if (same == target_.times.count) {
-      write("        {} = {}\n", attribute, first);
+    const std::vector<double> times = camera_times();
+    std::vector<std::string> values;
+    for (const double time : times) values.push_back(fmt::format("{}", text(target_.camera(time))));
+    if (std::all_of(values.begin(), values.end(), [&](const std::string& value) { return value == values.front(); })) {
+      write("        {} = {}\n", attribute, values.front());
       return;
     }
     write("        {}.timeSamples = {{\n", attribute);
-    for (int k = 0; k < target_.times.count; ++k) write("            {}: {},\n", target_.times.frame(k), value(k));
+    for (std::size_t k = 0; k < times.size(); ++k) write("            {}: {},\n", times[k], values[k]);
     write("        }}\n");
   }
 
@@ -201,12 +215,13 @@ ExportFormat usda_format() {
   format.about =
       "USD text, a file of the whole shot: meshes with time samples, materials with textures, camera; float32";
   format.file_per = FilePer::Shot;
-  format.version = 3;
+  format.version = 4;
   format.has_normals = true;
   format.has_seconds = true;
   format.has_transform = true;
   format.needs_look = true;
   format.needs_camera = true;
+  format.names_pictures = true;
   format.make = [](ExportTarget target) { return std::make_unique<UsdaFile>(std::move(target)); };
   return format;
 }

@@ -16,20 +16,6 @@ std::string color_text(const Vec3f& v) {
   return fmt::format("({}, {}, {})", v.x(), v.y(), v.z());
 }
 
-/// Where the layer finds the file: relative to its folder, as text, which is how it is joined to the layer's path, or
-/// whole where that leads elsewhere, for the folder lies behind a link.
-std::string asset(const std::string& path, const std::string& folder) {
-  namespace fs = std::filesystem;
-  const fs::path base = plain_path(fs::absolute(folder.empty() ? "." : folder)), file = plain_path(fs::absolute(path)),
-                 text = file.lexically_relative(base);
-  std::error_code none;
-  const bool leads_there = fs::equivalent(base / text, file, none);
-  std::string relative = (leads_there || !fs::exists(file, none) ? text : file).generic_string();
-  if (!relative.starts_with('.') && !relative.starts_with('/')) relative.insert(0, "./");
-  const char* const quote = relative.find('@') == std::string::npos ? "@" : "@@@";
-  return quote + relative + quote;
-}
-
 /// One input of the surface that may be a picture's.
 struct Picture {
   const char* name;    ///< of its prim
@@ -137,7 +123,7 @@ class LookWriter {
       line("float4 inputs:bias = ({}, {}, -1, 0)", -s, -s);
       line("float4 inputs:scale = ({}, {}, 2, 1)", 2 * s, 2 * s);
     }
-    line("asset inputs:file = {}", asset(picture.path, folder_));
+    line("asset inputs:file = {}", usda_asset(picture.path, folder_));
     line("token inputs:sourceColorSpace = \"{}\"", is_srgb ? "sRGB" : "raw");
     line("float2 inputs:st.connect = <{}/{}.outputs:result>", path_, is_placed() ? "placed" : "coordinates");
     line("token inputs:wrapS = \"{}\"", wrap);
@@ -154,6 +140,18 @@ class LookWriter {
 };
 
 }  // namespace
+
+std::string usda_asset(const std::string& path, const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path base = plain_path(fs::absolute(folder.empty() ? "." : folder)), file = plain_path(fs::absolute(path)),
+                 text = file.lexically_relative(base);
+  std::error_code none;
+  const bool leads_there = fs::equivalent(base / text, file, none);
+  std::string relative = (leads_there || !fs::exists(file, none) ? text : file).generic_string();
+  if (!relative.starts_with('.') && !relative.starts_with('/')) relative.insert(0, "./");
+  const char* const quote = relative.find('@') == std::string::npos ? "@" : "@@@";
+  return quote + relative + quote;
+}
 
 std::string usda_look(const ExportBody& body, const std::string& name, const std::string& parent,
                       const std::string& folder) {

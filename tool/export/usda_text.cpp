@@ -5,6 +5,7 @@
 
 #include <fmt/compile.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 namespace softreel {
 namespace {
@@ -55,8 +56,10 @@ std::string UsdaNames::unique(const std::string& name) {
 }
 
 std::string usda_quoted(const std::string& text) {
+  using Json = nlohmann::json;  // names of files may be of any bytes, a layer is UTF-8
+  const std::string valid = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
   std::string quoted = "\"";
-  for (const char c : text) {
+  for (const char c : valid) {
     if (c == '"' || c == '\\') quoted += '\\';
     if (c == '\n' || c == '\r')
       quoted += c == '\n' ? "\\n" : "\\r";

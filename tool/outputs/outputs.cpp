@@ -30,6 +30,13 @@ std::optional<int> number_at_end(const std::string& text) {
   return number;
 }
 
+/// Whole, without links but for one of the file itself: that is what a new file of this name would take the place of.
+std::string place_of(const std::string& path) {
+  const fs::path whole = fs::absolute(path);
+  std::error_code none;
+  return (fs::weakly_canonical(whole.parent_path(), none) / whole.filename()).string();
+}
+
 std::string settings_id_of(const SettingsSnapshot& settings) {
   KeyHasher key("settings");
   for (const auto& [field, value] : settings) key.add(field).add(value);
@@ -53,6 +60,19 @@ void Outputs::set_settings(const SettingsSnapshot& settings) {
   }
   settings_ = settings;
   settings_id_ = settings_id_of(settings);
+}
+
+void Outputs::protect(const std::vector<std::string>& inputs) {
+  for (const std::string& path : inputs) protected_.insert(place_of(path));
+}
+
+void Outputs::require_free(const std::string& path) const {
+  if (!protected_.contains(place_of(path))) return;
+  throw input_error(
+      fmt::format("{}: the shot reads this file, and a result would take its place.\n"
+                  "  Accepted: results of other names than what the shot is made of. Give another output folder "
+                  "(--output DIR) or shot.name, or move the file and say so in the shot.",
+                  path));
 }
 
 std::string Outputs::frame_path(int frame, const std::string& extension) const {
@@ -120,6 +140,7 @@ bool Outputs::is_done(const std::string& path, const StageKey& key) const {
 }
 
 bool Outputs::insert(const std::string& path, const OutputEntry& entry, const std::function<bool()>& give_name) {
+  require_free(path);
   return update([&](const ManifestContents&) -> std::optional<ManifestChange> {
     if (!give_name()) return std::nullopt;
     return ManifestChange{{{name_of(path), entry}}, {}, {}};
@@ -154,6 +175,7 @@ int Outputs::remove_if(const std::vector<std::string>& paths,
     ManifestChange change;
     for (const std::string& path : paths) {
       if (!is_outdated(path)) continue;
+      require_free(path);
       std::error_code failed;
       fs::remove(path, failed);
       if (failed) throw work_error(fmt::format("{}: cannot be removed: {}.", path, failed.message()));

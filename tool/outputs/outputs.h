@@ -40,6 +40,11 @@ class Outputs {
   /// What files written from now on are made with. Throws input_error for what is no UTF-8.
   void set_settings(const SettingsSnapshot& settings);
 
+  /// Files of these paths are neither replaced nor removed: whoever tries gets an input_error.
+  void protect(const std::vector<std::string>& inputs);
+  /// Throws that for a path of theirs.
+  void require_free(const std::string& path) const;
+
   /// Reads the file to verify it.
   OutputState state(const std::string& path, const StageKey& key) const;
   /// The same without reading: Done may be damaged.
@@ -94,6 +99,7 @@ class Outputs {
   bool insert(const std::string& path, const OutputEntry& entry, const std::function<bool()>& give_name);
 
   std::string folder_, shot_name_;
+  std::set<std::string> protected_;  ///< whole paths without links to folders
   const Log& log_;
   mutable std::recursive_mutex mutex_;  ///< of what follows; recursive: a change asks for what is there
   Manifest manifest_;

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/types.h"
+#include "render/image/image_io.h"
 #include "tests/support/program.h"
 #include "tests/tool/export/readers/glb_reader.h"
 #include "tests/tool/export/readers/point_cache_reader.h"
@@ -79,7 +80,7 @@ TEST_F(ExportProgram, AllFormatsOfOneRunSayTheSamePositionsInFileOrder) {
     expect_same_bits(usda->child("ball/ball").property("points").samples.at(1.0 + static_cast<double>(s)).floats(),
                      exact);
     EXPECT_EQ(mdd.times[s], static_cast<float>((1.0 + static_cast<double>(s)) / 24));
-    EXPECT_EQ(glb.times[s], mdd.times[s]);
+    EXPECT_EQ(glb.times[s], static_cast<float>(static_cast<double>(s) / 24)) << "a clip begins at 0";
     const std::vector<float> shown = glb.positions_at(glb.times[s]);
     ASSERT_EQ(shown.size(), exact.size()) << "a mesh without texture coordinates needs no duplicates";
     for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(shown[i], exact[i], 1.2e-7);
@@ -208,8 +209,65 @@ TEST_F(ExportProgram, ARangeOfFramesKeepsItsPlaceInTime) {
   require_export("--format pc2,mdd,glb,usda --frames 3-4");
   EXPECT_EQ(read_pc2(bytes("ball.ball.pc2")).start_frame, 3.0F);
   EXPECT_EQ(read_mdd(bytes("ball.ball.mdd")).times[0], 3.0F / 24);
-  EXPECT_EQ(read_glb(bytes("ball.ball.glb")).times[0], 3.0F / 24);
+  const GlbScene glb = read_glb(bytes("ball.ball.glb"));
+  EXPECT_EQ(glb.times[0], 0) << "clips of players begin at once";
+  EXPECT_NE(glb.header.find("\"first_frame\":3"), std::string::npos) << glb.header;
   EXPECT_EQ(read_usda(bytes("ball.usda"))->metadata.at("startTimeCode").number, 3);
+}
+
+TEST_F(ExportProgram, NeverTakesThePlaceOfWhatTheShotReads) {
+  require_export("--format obj --frames 2");
+  const std::string pose = bytes("ball.ball.0002.obj");
+  const std::string as_mesh = fmt::format("--set 'body.ball.mesh=\"{}\"' ", file("ball.ball.0002.obj"));
+  for (const char* formats : {"--format obj", "--format pc2,obj --frames 1-3"}) {
+    const Outcome outcome = export_shot(as_mesh + formats);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find("ball.ball.0002.obj: the shot reads this file"), std::string::npos) << outcome.err;
+    EXPECT_EQ(bytes("ball.ball.0002.obj"), pose);
+    EXPECT_FALSE(exists(file("ball.ball.pc2"))) << "refused before the work";
+  }
+  EXPECT_EQ(export_shot(as_mesh + "--format obj --frames 3-4").status, 0) << "files beside it are free";
+  // By way of a link to the folder too.
+  std::filesystem::create_directory_symlink(folder_ + "/out", folder_ + "/elsewhere");
+  const Outcome linked = run(
+      fmt::format("softreel export {0}/shot.toml --output {0}/elsewhere --quiet {1} --format obj", folder_, as_mesh));
+  EXPECT_EQ(linked.status, 2) << linked.err;
+  EXPECT_EQ(bytes("ball.ball.0002.obj"), pose);
+}
+
+TEST_F(ExportProgram, PathsOfPicturesFollowAFolderThatWasMoved) {
+  const std::vector<std::uint8_t> png = encode_png({2, 2, std::vector<std::uint8_t>(12, 200)});
+  write_text(folder_ + "/paint.png", std::string(png.begin(), png.end()));
+  write_text(folder_ + "/mapped.obj",
+             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n"
+             "f 1/1 3/2 2/3\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n");
+  const std::string paint = fmt::format(
+      "--set 'material.soft.base_color_texture=\"{0}/paint.png\"' --set 'body.ball.mesh=\"{0}/mapped.obj\"' --set "
+      "body.ball.tets=2000",
+      folder_);
+  const auto to = [&](const std::string& folder) {
+    return run(fmt::format("softreel export {0}/shot.toml --quiet --json --format usda --output {0}/{1} {2}", folder_,
+                           folder, paint));
+  };
+  const Outcome first = to("moved");
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_EQ(written_and_kept(to("moved")), std::pair(0, 1));
+  std::filesystem::create_directory(folder_ + "/deep");
+  std::filesystem::rename(folder_ + "/moved", folder_ + "/deep/moved");
+  EXPECT_EQ(written_and_kept(to("deep/moved")), std::pair(1, 0));
+}
+
+TEST_F(ExportProgram, ADryRunSaysWhichFilesAndNoPictures) {
+  require_export("--format obj,pc2 --frames 1-2");
+  const auto plan = nlohmann::json::parse(export_shot("--format obj,pc2 --frames 1-4 --dry-run").out);
+  EXPECT_EQ(plan.at("files").at("missing"), 3) << "two poses, and the point cache of more frames";
+  EXPECT_EQ(plan.at("files").at("of"), 5);
+  EXPECT_EQ(plan.at("files").at("outdated"), 1);
+  EXPECT_EQ(plan.at("simulate").at("missing"), 2);
+  EXPECT_FALSE(plan.contains("trace"));
+  EXPECT_EQ(plan.at("expected").at("render_seconds"), 0);
+  EXPECT_FALSE(exists(file("ball.ball.0003.obj")));
+  EXPECT_TRUE(nlohmann::json::parse(export_shot("--format obj --frames 1-2 --dry-run").out).at("complete").get<bool>());
 }
 
 TEST_F(ExportProgram, RefusesBeforeItWorksWhatAFormatCouldOnlyIgnore) {

@@ -41,6 +41,7 @@ class FormatRun {
     target_.shot = "shot";
     target_.folder = folder_.path("");
     target_.camera = [](double) { return Camera{}; };
+    target_.camera_cut = [](double, double) { return std::nullopt; };
     target_.sink = [this](std::span<const std::uint8_t> bytes) {
       file_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     };

@@ -35,9 +35,8 @@ TEST(GlbExport, ShowsEachSampleAtItsTimeAndTheFilesVerticesFirst) {
   testing::expect_same_floats(scene.positions, testing::floats_of(mesh.positions));
   EXPECT_GT(scene.positions.size(), 3 * mesh.positions.size()) << "no duplicates at seams";
   for (int s = 0; s < 5; ++s) {
-    EXPECT_EQ(scene.times[static_cast<std::size_t>(s)], static_cast<float>((3 + 0.5 * s) / 10));
-    EXPECT_LE(worst_error(scene.positions_at((3 + 0.5 * s) / 10), testing::moved(mesh.positions, s), mesh.positions),
-              1.2e-7);
+    EXPECT_EQ(scene.times[static_cast<std::size_t>(s)], static_cast<float>(0.5 * s / 10)) << "a clip begins at 0";
+    EXPECT_LE(worst_error(scene.positions_at(0.5 * s / 10), testing::moved(mesh.positions, s), mesh.positions), 1.2e-7);
   }
 }
 
@@ -176,10 +175,10 @@ TEST(GlbExport, RefusesWhatItsFormatCannotSay) {
     run.target().settings.fps = fps;
     return testing::error_of([&] { run.begin(); });
   };
-  EXPECT_NE(message({-3, 1, 5}, 24).find("before 0"), std::string::npos);
   EXPECT_NE(message({1, 1, 40000}, 24).find("4 GiB"), std::string::npos);
-  EXPECT_NE(message({1e6, 100, 3}, 24).find("float32"), std::string::npos);
-  EXPECT_EQ(message({1, 1, 5}, 24), "");
+  EXPECT_NE(message({1, 1, 3}, 1e300).find("float32"), std::string::npos);
+  EXPECT_EQ(message({-3, 1, 5}, 24), "");
+  EXPECT_EQ(message({1e6, 100, 3}, 24), "");
 }
 
 }  // namespace

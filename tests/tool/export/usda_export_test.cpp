@@ -1,5 +1,7 @@
 // USDA, read back by a reader written from its grammar.
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "render/scene/camera_frame.h"
 #include "tests/tool/export/format_runs.h"
@@ -116,6 +118,44 @@ TEST(UsdaExport, ExtentsEncloseThePointsOfTheirSample) {
       EXPECT_EQ(extent[3 + k], high);
     }
   }
+}
+
+TEST(UsdaExport, CutsOfTheCameraAreCutsBetweenSamplesToo) {
+  const SurfaceMesh mesh = testing::patchwork();
+  testing::FormatRun run("usda");
+  run.add_body("cloth", mesh);
+  run.target().times = {1, 1, 4};
+  run.target().camera = [](double frame) {
+    Camera camera;
+    camera.position = Vec3f(frame < 2.5 ? 0.0f : frame < 4 ? 10.0f : 20.0f, 0, 5);
+    camera.target = camera.position - Vec3f(0, 0, 1);
+    return camera;
+  };
+  run.target().camera_cut = [](double after, double until) {
+    std::optional<double> cut;
+    for (const double at : {2.5, 4.0})
+      if (at > after && at <= until) cut = at;
+    return cut;
+  };
+  for (int s = 0; s < 4; ++s) run.append(1 + s, mesh.positions);
+  const auto stage = testing::read_usda(run.finish());
+  std::map<double, double> x;
+  for (const auto& [time, value] : stage->child("shot/camera").property("xformOp:transform").samples)
+    x[time] = value.doubles()[12];
+  const std::map<double, double> expected{{1, 0}, {2, 0}, {2.499, 0}, {2.5, 10}, {3, 10}, {3.999, 10}, {4, 20}};
+  EXPECT_EQ(x, expected);
+}
+
+TEST(UsdaExport, NamesOfAnyBytesAreUtf8) {
+  SurfaceMesh mesh = testing::patchwork();
+  mesh.groups.front().name = "caf\xe9";
+  testing::FormatRun run("usda");
+  run.add_body("cloth", mesh);
+  run.target().times = {1, 1, 1};
+  run.append(1, mesh.positions);
+  const std::string text = run.finish();
+  EXPECT_EQ(text.find('\xe9'), std::string::npos);
+  EXPECT_NE(text.find("caf\xef\xbf\xbd"), std::string::npos) << "the sign for what cannot be read";
 }
 
 TEST(UsdaExport, KeepsBodiesApartWhateverTheirNamesAndOrder) {
