@@ -17,10 +17,11 @@ struct VertexGroup {
 /// Polygons as the file has them, but for the winding of those that repair_mesh turned; polygon p owns the corners
 /// [offsets[p], offsets[p + 1]).
 struct PolygonList {
-  std::vector<Index> offsets{0};       ///< polygons + 1
-  std::vector<Index> corner_vertices;  ///< index into positions, per corner
-  std::vector<Index> corner_textures;  ///< into texture_coordinates, per corner, -1: none; empty if the file has none
-  std::vector<Index> polygon_groups;   ///< index into groups, per polygon, -1 for none; empty if the file has none
+  std::vector<Index> offsets{0};         ///< polygons + 1
+  std::vector<Index> corner_vertices;    ///< index into positions, per corner
+  std::vector<Index> corner_textures;    ///< into texture_coordinates, per corner, -1: none; empty if the file has none
+  std::vector<Index> polygon_groups;     ///< index into groups, per polygon, -1 for none; empty if the file has none
+  std::vector<Index> polygon_materials;  ///< the same of its material, which is a group too; empty if none has any
 
   std::size_t size() const { return offsets.size() - 1; }
 };

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Raised whenever the same file would give another surface, or the bytes are laid out differently.
-constexpr const char* kReadVersion = "read surface 3";
+constexpr const char* kReadVersion = "read surface 4";
 
 constexpr std::uintmax_t kLeastBytes = 1 << 20;
 
@@ -108,6 +108,7 @@ Bytes pack(const ReadSurface& surface, const std::vector<Message>& messages) {
   out.put_array(mesh.polygons.corner_vertices);
   out.put_array(mesh.polygons.corner_textures);
   out.put_array(mesh.polygons.polygon_groups);
+  out.put_array(mesh.polygons.polygon_materials);
   out.put(static_cast<std::uint64_t>(mesh.groups.size()));
   for (const VertexGroup& group : mesh.groups) {
     put(out, group.name);
@@ -129,6 +130,7 @@ SurfaceMesh unpack_mesh(ByteReader& in) {
   mesh.polygons.corner_vertices = in.get_array<Index>();
   mesh.polygons.corner_textures = in.get_array<Index>();
   mesh.polygons.polygon_groups = in.get_array<Index>();
+  mesh.polygons.polygon_materials = in.get_array<Index>();
   for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
     std::string name = get_text(in);
     mesh.groups.push_back({std::move(name), in.get_array<Index>()});
@@ -164,6 +166,7 @@ StageKey mesh_file_key(const SurfaceMesh& mesh) {
   const PolygonList& polygons = mesh.polygons;
   key.add(polygons.offsets).add(polygons.corner_vertices).add(polygons.corner_textures).add(polygons.polygon_groups);
   for (const VertexGroup& group : mesh.groups) key.add(group.name).add(group.vertices);
+  if (!polygons.polygon_materials.empty()) key.add("materials").add(polygons.polygon_materials);
   return key.key();
 }
 

@@ -44,12 +44,17 @@ void write_polygons(const SurfaceMesh& mesh, bool has_normals, fmt::memory_buffe
   const PolygonList& polygons = mesh.polygons;
   const auto out = std::back_inserter(text);
   const std::vector<std::string> words = group_words(mesh.groups);
-  Index group = -1;
+  const auto name = [&](const char* statement, Index now, Index& last) {
+    if (now != last)
+      fmt::format_to(out, "{}{}\n", statement, now < 0 ? "" : " " + words[static_cast<std::size_t>(now)]);
+    last = now;
+  };
+  const auto of = [](const std::vector<Index>& groups, std::size_t p) { return groups.empty() ? -1 : groups[p]; };
+  Index last_group = -1, last_material = -1;
   for (std::size_t p = 0; p < polygons.size(); ++p) {
-    if (!polygons.polygon_groups.empty() && polygons.polygon_groups[p] != group) {
-      group = polygons.polygon_groups[p];
-      fmt::format_to(out, "{}\n", group < 0 ? "g" : "g " + words[static_cast<std::size_t>(group)]);
-    }
+    const Index group = of(polygons.polygon_groups, p), material = of(polygons.polygon_materials, p);
+    name("g", group == material ? -1 : group, last_group);
+    name("usemtl", material, last_material);
     text.push_back('f');
     for (Index c = polygons.offsets[p]; c < polygons.offsets[p + 1]; ++c) {
       const auto corner = static_cast<std::size_t>(c);
@@ -82,8 +87,10 @@ std::vector<std::uint8_t> encode_obj(const SurfaceMesh& mesh, std::span<const Ve
 ExportFormat obj_format() {
   ExportFormat format;
   format.name = "obj";
-  format.about = "Wavefront OBJ, a file a frame, with polygons, texture coordinates, colours and groups; exact";
-  format.version = 5;
+  format.about =
+      "Wavefront OBJ, a file a frame, with polygons, texture coordinates, colours, groups and names of materials; "
+      "exact";
+  format.version = 6;
   format.has_normals = true;
   format.has_colors = true;
   format.make = whole_file_writer(encode_obj);

@@ -215,7 +215,7 @@ ExportFormat usda_format() {
   format.about =
       "USD text, a file of the whole shot: meshes with time samples, materials with textures, camera; float32";
   format.file_per = FilePer::Shot;
-  format.version = 4;
+  format.version = 5;
   format.has_normals = true;
   format.has_seconds = true;
   format.has_transform = true;

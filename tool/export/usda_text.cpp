@@ -108,6 +108,10 @@ std::string usda_groups(const SurfaceMesh& mesh, const std::string& indent) {
   const std::vector<Index>& of_polygon = mesh.polygons.polygon_groups;
   for (std::size_t p = 0; p < of_polygon.size(); ++p)
     if (of_polygon[p] >= 0) faces[static_cast<std::size_t>(of_polygon[p])].push_back(static_cast<Index>(p));
+  const std::vector<Index>& materials = mesh.polygons.polygon_materials;
+  for (std::size_t p = 0; p < materials.size(); ++p)
+    if (materials[p] >= 0 && (of_polygon.empty() || of_polygon[p] != materials[p]))
+      faces[static_cast<std::size_t>(materials[p])].push_back(static_cast<Index>(p));
   std::string text;
   UsdaNames names;
   for (std::size_t g = 0; g < mesh.groups.size(); ++g) {

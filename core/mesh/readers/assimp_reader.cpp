@@ -31,6 +31,8 @@ class SceneMerger {
     }
     if (mesh_.texture_coordinates.empty()) mesh_.polygons.corner_textures.clear();
     if (mesh_.groups.empty()) mesh_.polygons.polygon_groups.clear();
+    std::vector<Index>& materials = mesh_.polygons.polygon_materials;
+    if (std::all_of(materials.begin(), materials.end(), [](Index material) { return material < 0; })) materials.clear();
     if (!mesh_.colors.empty()) pad_colors(mesh_.colors, mesh_.positions.size());
     return std::move(mesh_);
   }
@@ -70,7 +72,7 @@ class SceneMerger {
                                                double{part.mTextureCoords[0][v].y});
     }
     add_colors(part);
-    const Index group = add_names(part, node, first_vertex);
+    const auto [group, material] = add_names(part, node, first_vertex);
     const bool mirrored = transform.Determinant() < 0;
     PolygonList& polygons = mesh_.polygons;
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
@@ -80,7 +82,9 @@ class SceneMerger {
         polygons.corner_vertices.push_back(first_vertex + corner);
         polygons.corner_textures.push_back(has_textures ? first_texture + corner : -1);
       }
-      if (close_polygon(polygons)) polygons.polygon_groups.push_back(group);  // else a point or a line
+      if (!close_polygon(polygons)) continue;  // a point or a line
+      polygons.polygon_groups.push_back(group);
+      polygons.polygon_materials.push_back(material);
     }
   }
 
@@ -95,21 +99,27 @@ class SceneMerger {
     }
   }
 
-  /// Makes the vertices from first_vertex on members of the groups of their names; returns the first group, or -1.
-  Index add_names(const aiMesh& part, const aiNode& node, Index first_vertex) {
+  struct PartNames {
+    Index group = -1, material = -1;
+  };
+
+  /// Makes the vertices from first_vertex on members of the groups of their names; returns the first, and that of the
+  /// material unless assimp made it up.
+  PartNames add_names(const aiMesh& part, const aiNode& node, Index first_vertex) {
     aiString material;
     if (part.mMaterialIndex < scene_.mNumMaterials)
       scene_.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_NAME, material);
-    Index first = -1;
+    PartNames names;
     for (const aiString& name : {node.mName, part.mName, material}) {
       if (name.length == 0) continue;
       const auto [found, added] = group_of_.try_emplace(name.C_Str(), static_cast<Index>(mesh_.groups.size()));
       if (added) mesh_.groups.push_back({name.C_Str(), {}});
-      if (first < 0) first = found->second;
+      if (names.group < 0) names.group = found->second;
+      if (name == material && name != aiString(AI_DEFAULT_MATERIAL_NAME)) names.material = found->second;
       std::vector<Index>& vertices = mesh_.groups[static_cast<std::size_t>(found->second)].vertices;
       for (auto v = first_vertex; v < static_cast<Index>(mesh_.positions.size()); ++v) vertices.push_back(v);
     }
-    return first;
+    return names;
   }
 
   const aiScene& scene_;

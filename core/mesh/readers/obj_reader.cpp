@@ -49,6 +49,7 @@ class ObjReader {
     if (!mesh_.colors.empty()) pad_colors(mesh_.colors, mesh_.positions.size());
     if (!has_textures_) mesh_.polygons.corner_textures.clear();
     if (mesh_.groups.empty()) mesh_.polygons.polygon_groups.clear();
+    if (!has_materials_) mesh_.polygons.polygon_materials.clear();
     collect_groups(mesh_, ranges_);
     skipped_.report(source_, log_);
     return std::move(mesh_);
@@ -145,10 +146,10 @@ class ObjReader {
       polygons.corner_textures.push_back(texture == 0 ? -1 : resolve(texture, mesh_.texture_coordinates.size(), true));
       has_textures_ = has_textures_ || texture != 0;
     }
-    if (close_polygon(polygons))
-      polygons.polygon_groups.push_back(main_group());
-    else
-      skipped_.add(place());
+    if (!close_polygon(polygons)) return skipped_.add(place());
+    polygons.polygon_groups.push_back(main_group());
+    polygons.polygon_materials.push_back(material_);
+    has_materials_ = has_materials_ || material_ >= 0;
   }
 
   Index resolve(std::int64_t value, std::size_t count, bool is_texture) {
@@ -210,7 +211,7 @@ class ObjReader {
   LineScanner lines_;
   std::string joined_;
   SurfaceMesh mesh_;
-  bool has_textures_ = false;
+  bool has_textures_ = false, has_materials_ = false;
   std::vector<ForwardReference> forward_;
   SkippedFaces skipped_;
   std::map<std::string, Index> group_of_;

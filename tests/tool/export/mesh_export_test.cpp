@@ -66,6 +66,39 @@ TEST(ObjExport, ReadsBackBitForBitWithPolygonsTexturesAndGroups) {
   EXPECT_EQ(back.polygons.polygon_groups, mesh.polygons.polygon_groups);
 }
 
+/// Quads in a row, in the groups and of the materials that are named; "" for none.
+SurfaceMesh strip(const std::vector<std::pair<std::string, std::string>>& faces) {
+  std::string text, group, material;
+  for (std::size_t k = 0; k <= faces.size(); ++k) text += fmt::format("v {0} 0 0\nv {0} 1 0\n", k);
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    text += fmt::format("g {}\nusemtl {}\nf {} {} {} {}\n", faces[k].first, faces[k].second, 2 * k + 1, 2 * k + 3,
+                        2 * k + 4, 2 * k + 2);
+  return read_back("strip.obj", {text.begin(), text.end()});
+}
+
+/// "GROUP/MATERIAL ..." of the polygons.
+std::string names_of_polygons(const SurfaceMesh& mesh) {
+  const auto name = [&](const std::vector<Index>& of, std::size_t p) {
+    return of.empty() || of[p] < 0 ? std::string() : mesh.groups[static_cast<std::size_t>(of[p])].name;
+  };
+  std::string text;
+  for (std::size_t p = 0; p < mesh.polygons.size(); ++p)
+    text += name(mesh.polygons.polygon_groups, p) + "/" + name(mesh.polygons.polygon_materials, p) + " ";
+  return text;
+}
+
+TEST(ObjExport, KeepsTheMaterialsOfFacesBesideTheirGroups) {
+  for (const auto& [faces, expected] :
+       std::vector<std::pair<std::vector<std::pair<std::string, std::string>>, std::string>>{
+           {{{"body", "red"}, {"body", "blue"}, {"hat", "blue"}, {"hat", ""}}, "body/red body/blue hat/blue hat/ "},
+           {{{"", "red"}, {"", "blue"}, {"", ""}, {"hat", ""}}, "red/red blue/blue / hat/ "}}) {
+    const SurfaceMesh mesh = strip(faces), back = read_back("b.obj", encode_obj(mesh, mesh.positions));
+    EXPECT_EQ(names_of_polygons(mesh), expected);
+    EXPECT_EQ(names_of_polygons(back), expected);
+    EXPECT_EQ(groups_of(back), groups_of(mesh));
+  }
+}
+
 TEST(ObjExport, OfItsOwnResultHasTheSameBytes) {
   const SurfaceMesh mesh = testing::patchwork();
   const std::vector<std::uint8_t> bytes = encode_obj(mesh, mesh.positions);

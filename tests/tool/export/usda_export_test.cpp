@@ -84,6 +84,23 @@ TEST(UsdaExport, HasPolygonsTexturesPerCornerAndGroupsOfTheFile) {
   EXPECT_EQ(body.child("right").property("elementType").value.text, "face");
 }
 
+TEST(UsdaExport, MaterialsOfFacesAreSubsetsOfFacesBesideTheirGroups) {
+  SurfaceMesh mesh = testing::unit_box();
+  const auto polygons = static_cast<Index>(mesh.polygons.size());
+  mesh.groups = {{"box", {0, 1, 2, 3, 4, 5, 6, 7}}, {"red", {0, 1, 2, 3, 4, 5, 6, 7}}};
+  mesh.polygons.polygon_groups.assign(mesh.polygons.size(), 0);
+  mesh.polygons.polygon_materials.assign(mesh.polygons.size(), -1);
+  mesh.polygons.polygon_materials.back() = 1;
+  testing::FormatRun run("usda");
+  run.add_body("box", mesh);
+  run.append(1, mesh.positions);
+  const auto stage = testing::read_usda(run.finish());
+  const UsdPrim& red = stage->child("shot/box/red");
+  EXPECT_EQ(red.property("elementType").value.text, "face");
+  EXPECT_EQ(red.property("indices").value.doubles(), std::vector<double>({static_cast<double>(polygons - 1)}));
+  EXPECT_EQ(stage->child("shot/box/box").property("indices").value.doubles().size(), mesh.polygons.size());
+}
+
 TEST(UsdaExport, GroupsThatNoPolygonNamesAreSubsetsOfPoints) {
   SurfaceMesh mesh = testing::unit_box();
   mesh.groups = {{"left hand", {0, 5}}};

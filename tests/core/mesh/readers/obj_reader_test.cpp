@@ -66,6 +66,10 @@ TEST(ObjReader, MakesVertexGroupsOfGroupsObjectsAndMaterials) {
   EXPECT_EQ(group("body"), std::vector<Index>({0, 1, 2, 3}));
   EXPECT_EQ(group("red paint"), std::vector<Index>({0, 2, 3}));
   EXPECT_EQ(mesh.groups[static_cast<std::size_t>(mesh.polygons.polygon_groups[1])].name, "right");
+  ASSERT_EQ(mesh.polygons.polygon_materials.size(), 2U);
+  EXPECT_EQ(mesh.polygons.polygon_materials[0], -1);
+  EXPECT_EQ(mesh.groups[static_cast<std::size_t>(mesh.polygons.polygon_materials[1])].name, "red paint");
+  EXPECT_TRUE(import_text("a.obj", std::string("o body\n") + kSquare + "f 1 2 3\n").polygons.polygon_materials.empty());
 }
 
 TEST(ObjReader, SaysWhichLineIsWrongWithWhatAndWhatToDo) {
