@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/test_folder.h"
+
 namespace softreel::bench {
 namespace {
 
@@ -17,7 +19,7 @@ std::string read(const fs::path& path) {
 }
 
 fs::path new_folder(const std::string& name) {
-  const fs::path folder = fs::path(::testing::TempDir()) / ("bench_report_" + name);
+  const fs::path folder = testing::test_folder() / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

@@ -11,7 +11,8 @@
 
 #include <fmt/format.h>
 #include <sys/wait.h>
-#include <unistd.h>
+
+#include "tests/support/test_folder.h"
 
 namespace softreel::testing {
 namespace fs = std::filesystem;
@@ -37,7 +38,7 @@ bool exists(const std::string& path) {
 }
 
 std::string new_folder(const std::string& name) {
-  const fs::path folder = fs::temp_directory_path() / fmt::format("softreel_test_{}", ::getpid()) / name;
+  const fs::path folder = test_folder() / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder.string();

@@ -169,11 +169,30 @@ class Playblast {
   double saved_seconds_ = 0;
 };
 
+/// Which of the files are of the shot as it is now, the drawing of each finds out.
+PlannedWork planned(const Shot& shot, const FrameSpan& frames, const Outputs& outputs) {
+  PlannedWork work;
+  work.of = frames.count();
+  for (int frame = frames.first; frame <= frames.last; ++frame) {
+    work.frames.push_back(frame);
+    work.missing += std::filesystem::exists(outputs.frame_path(frame, "png")) ? 0 : 1;
+  }
+  work.lines.push_back(fmt::format("draw {} frames of {} x {} to {}, {} of which are not there", work.of,
+                                   shot.render.params.width, shot.render.params.height, outputs.folder(),
+                                   work.missing));
+  return work;
+}
+
 }  // namespace
 
 int run_preview(const PreviewOptions& options) {
   check_cut_options(options);
-  if (options.shot.dry_run) return run_plan(options.shot);
+  if (options.shot.dry_run)
+    return run_plan(options.shot, [&](ShotRun& run, Outputs& of_pictures) {
+      const Shot& shot = run.shot();
+      const Outputs outputs(of_pictures.folder(), shot.settings.name + ".preview", run.context().log);
+      return planned(shot, parse_frames(options.shot.frames, shot), outputs);
+    });
   Session session(options.shot);
   const Shot& shot = session.shot();
   const FrameSpan frames = session.frames();

@@ -8,12 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/support/test_folder.h"
 
 namespace softreel {
 namespace {
 
 std::string written(const std::string& name, const std::vector<std::uint8_t>& bytes) {
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / name).string();
+  const std::string path = testing::test_folder() / name;
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return path;

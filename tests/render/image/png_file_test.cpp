@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "render/image/image_io.h"
+#include "tests/support/test_folder.h"
 
 namespace softreel {
 namespace {
@@ -19,9 +20,7 @@ DisplayImage noise(int width, int height) {
 }
 
 DisplayImage read_back(const std::vector<std::uint8_t>& bytes) {
-  // Of its own for each case: they run beside each other.
-  const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / ("softreel_" + name + ".png")).string();
+  const std::string path = testing::test_folder() / "picture.png";
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return read_png(path);

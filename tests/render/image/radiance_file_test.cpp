@@ -14,6 +14,7 @@
 
 #include "core/base/error.h"
 #include "render/image/image_io.h"
+#include "tests/support/test_folder.h"
 
 namespace softreel {
 namespace {
@@ -177,7 +178,7 @@ TEST(Radiance, RefusesWhatIsNoRgbePicture) {
 
 TEST(Radiance, TexturesAndEnvironmentsReadItAndNameTheFileThatIsCutOff) {
   const SharedExponents pixels = some_exponents(9, 2);
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / "softreel_radiance.hdr").string();
+  const std::string path = testing::test_folder() / "picture.hdr";
   const std::string whole = radiance_header(9, 2) + coded_rows(pixels, 9);
   std::ofstream(path, std::ios::binary) << whole;
   EXPECT_TRUE(read_environment(path).pixels == colors_of(pixels));

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/srgb.h"
 #include "render/image/image_io.h"
+#include "tests/support/test_folder.h"
 
 namespace softreel {
 namespace {
@@ -54,10 +55,7 @@ TEST(MakePyramid, KeepsEqualTexelsBitForBit) {
 
 class TextureFiles : public ::testing::Test {
  protected:
-  static std::string path(const std::string& name) {
-    return ::testing::TempDir() + "/softreel_texture_" +
-           ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" + name;
-  }
+  static std::string path(const std::string& name) { return testing::test_folder() / name; }
   static std::string write(const std::string& name, const std::vector<std::uint8_t>& bytes) {
     std::ofstream(path(name), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

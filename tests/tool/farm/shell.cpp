@@ -11,6 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/test_folder.h"
+
 namespace softreel::testing {
 namespace fs = std::filesystem;
 namespace {
@@ -60,7 +62,7 @@ void write(const std::string& path, const std::string& text) {
 }
 
 std::string farm_folder(const std::string& name) {
-  const fs::path folder = fs::temp_directory_path() / fmt::format("softreel_farm_{}", ::getpid()) / name;
+  const fs::path folder = testing::test_folder() / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder.string();

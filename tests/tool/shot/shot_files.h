@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/support/test_folder.h"
 #include "tool/shot/shot_load.h"
 
 namespace softreel {
@@ -19,8 +20,7 @@ class ShotFiles : public ::testing::Test {
   void SetUp() override {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     before_ = std::filesystem::current_path();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              ("softreel_" + std::string(info->test_suite_name()) + "_" + info->name());
+    folder_ = testing::test_folder() / (std::string(info->test_suite_name()) + "_" + info->name());
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     std::filesystem::current_path(folder_);
