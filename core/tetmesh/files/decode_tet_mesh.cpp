@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 
 #include "core/tetmesh/files/tet_file.h"
 #include "core/tetmesh/files/tet_mesh_file.h"
@@ -144,6 +145,35 @@ std::size_t mend_overlaps(const MeshSource& source, TetMesh& mesh) {
   return before - mesh.tets.size();
 }
 
+/// Faces of one piece that lie on one of another without shared nodes. Not of whole lattice tetrahedra, which know
+/// their fill: there limbs side by side are apart on purpose.
+std::size_t count_parted_faces(const TetMesh& mesh, const std::vector<Index>& piece_of) {
+  if (!mesh.fill.empty()) return 0;
+  const std::vector<Index> weld = weld_positions(mesh.nodes);
+  std::map<Triangle, Index> pieces;  // by welded nodes
+  std::size_t parted = 0;
+  for (const BoundaryFace& face : find_boundary(mesh)) {
+    Triangle key;
+    for (std::size_t k = 0; k < 3; ++k) key[k] = weld[static_cast<std::size_t>(face.nodes[k])];
+    std::sort(key.begin(), key.end());
+    const Index piece = piece_of[static_cast<std::size_t>(face.element)];
+    const auto [first, is_new] = pieces.try_emplace(key, piece);
+    parted += !is_new && first->second != piece ? 1 : 0;
+  }
+  return parted;
+}
+
+void warn_of_parted_pieces(const std::string& name, const TetMesh& mesh, const Log& log) {
+  const std::vector<Index> piece_of = face_connected_pieces(mesh);
+  const Index pieces = piece_of.empty() ? 0 : *std::max_element(piece_of.begin(), piece_of.end()) + 1;
+  if (pieces <= 1) return;
+  if (const std::size_t parted = count_parted_faces(mesh, piece_of); parted > 0)
+    log.warn(fmt::format(
+        "{}: its tetrahedra are {} pieces, which come apart although they touch at {} faces: the nodes there "
+        "are equal but not shared. Accepted: this mesh, as it is. Merge equal nodes if it is one body.",
+        name, pieces, parted));
+}
+
 }  // namespace
 
 bool is_tet_mesh_extension(const std::string& extension) {
@@ -178,6 +208,7 @@ TetMesh decode_tet_mesh(const std::string& name, std::string_view bytes, const s
     log.info(fmt::format("{}: {} tetrahedra that it has twice were left out", name, repeated));
   if (const std::size_t dropped = drop_unused_nodes(mesh); dropped > 0)
     log.info(fmt::format("{}: {} nodes that no tetrahedron uses were left out", name, dropped));
+  warn_of_parted_pieces(name, mesh, log);
   return mesh;
 }
 

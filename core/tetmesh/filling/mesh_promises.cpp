@@ -7,8 +7,11 @@
 
 #include "core/base/check.h"
 #include "core/base/error.h"
+#include "core/mesh/mesh_topology.h"
 #include "core/tetmesh/quality/boundary_check.h"
 #include "core/tetmesh/quality/tet_quality.h"
+#include "core/tetmesh/quality/tunnels.h"
+#include "core/tetmesh/stuffing/boundary_mending.h"
 
 namespace softreel {
 
@@ -83,6 +86,26 @@ void require_whole(const TetMesh& mesh, const SurfaceMesh& solid, double edge, c
       "Accepted: an edge of about {:.2g} m or less. Set a smaller edge or more tets, or mode = \"embedded\", "
       "which holds together whatever the edge.",
       name, part, edge, count_pieces(mesh), 0.5 * edge));
+}
+
+Index count_new_tunnels(const StuffedMesh& stuffed, const Solid& solid) {
+  if (solid.parts.parts.size() != 1) return 0;
+  std::vector<Triangle> faces;
+  for (const BoundaryFace& face : find_surface_faces(stuffed)) faces.push_back(face.nodes);
+  const std::optional<Index> made = count_tunnels(faces);
+  if (made.value_or(0) == 0) return 0;
+  const std::optional<Index> given = count_tunnels(welded_triangles(solid.surface));
+  return given ? std::max(*made - *given, 0) : 0;
+}
+
+void warn_of_tunnels(const StuffedMesh& stuffed, const Solid& solid, const std::string& name, const Log& log) {
+  const Index tunnels = count_new_tunnels(stuffed, solid);
+  if (tunnels == 0) return;
+  log.warn(fmt::format(
+      "body '{}': the tetrahedra have {} tunnel{} that {} does not have: walls about as thin as they are were "
+      "perforated. Accepted: this mesh, as it is. Set a smaller edge or more tets, or mode = \"embedded\", "
+      "which covers them.",
+      name, tunnels, tunnels == 1 ? "" : "s", solid.parts.parts.front().place()));
 }
 
 void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads,

@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/mesh/surface_mesh.h"
 #include "core/tetmesh/filling/solids.h"
+#include "core/tetmesh/stuffing/isosurface_stuffing.h"
 #include "core/tetmesh/tet_mesh.h"
 
 namespace softreel {
@@ -32,6 +33,12 @@ bool is_whole(const TetMesh& mesh, const SurfaceMesh& surface);
 /// tetrahedra there, m.
 void require_whole(const TetMesh& mesh, const SurfaceMesh& solid, double edge, const std::string& part,
                    const std::string& name);
+
+/// Tunnels of a solid's boundary that its surface does not have: a thin wall is perforated. 0 where that is not known,
+/// as the surface is open, or of several parts, which together may have tunnels that none of them has.
+Index count_new_tunnels(const StuffedMesh& stuffed, const Solid& solid);
+/// Warns of them.
+void warn_of_tunnels(const StuffedMesh& stuffed, const Solid& solid, const std::string& name, const Log& log);
 
 /// Warns if the tetrahedra of a solid that is one closed part have more volume than it, or less.
 void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads,

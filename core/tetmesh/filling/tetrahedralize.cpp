@@ -16,6 +16,7 @@
 #include "core/tetmesh/filling/waiting_log.h"
 #include "core/tetmesh/graded/graded_stuffing.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
+#include "core/tetmesh/quality/boundary_check.h"
 #include "core/tetmesh/quality/tet_quality.h"
 #include "core/tetmesh/stuffing/boundary_mending.h"
 #include "core/tetmesh/stuffing/mesh_pieces.h"
@@ -89,12 +90,15 @@ StuffedMesh cover_surface(const Job& job, double edge, const Vec3& shift) {
   const LatticeFrame frame{prepared.box.center() + edge * (shift + kOffGrid), edge};
   EmbeddedLattice cover = cover_with_lattice(prepared.surface, prepared.parts, frame, prepared.carried, job.threads);
   job.log.info(fmt::format(
-      "body '{}': embedded in {} whole lattice tetrahedra, {} of them cut by the surface, {} of them copies "
+      "body '{}': embedded in {} whole lattice tetrahedra, {} of them cut by the surface, {} of those copies "
       "where parts of the body lie in one",
-      job.name, cover.mesh.tets.size(), cover.cut_cells, cover.copies));
-  if (cover.branches > 0)
-    job.log.info(fmt::format("body '{}': at {} places limbs side by side in one lattice tetrahedron join", job.name,
-                             cover.branches));
+      job.name, cover.mesh.tets.size(), cover.cut_cells + cover.copies, cover.copies));
+  const BoundaryDefects defects = check_boundary(cover.mesh.nodes, find_boundary(cover.mesh));
+  if (cover.branches > 0 || !defects.none())
+    job.log.info(
+        fmt::format("body '{}': limbs side by side in one lattice tetrahedron join: at {} faces, {} edges of the "
+                    "boundary and {} of its vertices",
+                    job.name, cover.branches, defects.edges, defects.vertices));
   return {std::move(cover.mesh), {}, {}};
 }
 
@@ -204,16 +208,26 @@ void warn_of_count(const Job& job, double wanted, std::size_t count) {
                   job.name, count, wanted));
 }
 
+/// How far a filling is from what is wanted; what comes first counts more.
+struct Fault {
+  double missed = 1e300;  ///< of the count, beyond what is tolerated
+  Index tunnels = 0;      ///< of thin walls; looked for where small counts let lattices be tried
+  double error = 1e300;   ///< of the count
+
+  auto operator<=>(const Fault&) const = default;
+};
+
 /// Predicts an edge, fills, and corrects it by the cube root of the count's error until that is within 5 %. Small
-/// counts go in jumps from lattice to lattice, and take little time: of them more lattices are tried.
+/// counts go in jumps from lattice to lattice, and take little time: of them more lattices are tried, also where one
+/// perforates a thin wall.
 Filling fill_with_count(const Job& job, double wanted) {
   double edge = edge_for_tets(job, wanted);
   Filling best;
   WaitingLog best_lines;
-  double best_error = 1e300;
+  Fault least;
   std::exception_ptr refused;
-  int refusals = 0;
-  constexpr int kSteps = 6, kStepsOfSmall = 24, kMostRefusals = 2;
+  int refusals = 0, perforated = 0;
+  constexpr int kSteps = 6, kStepsOfSmall = 24, kMostRefusals = 2, kMostPerforated = 4;
   constexpr double kMostOff = 0.25, kSmall = 50000;
   const int steps = wanted <= kSmall ? kStepsOfSmall : kSteps;
   for (int step = 0; step < steps; ++step) {
@@ -226,20 +240,24 @@ Filling fill_with_count(const Job& job, double wanted) {
                                lattice_shift(std::max(0, step - 1) + refusals));
     } catch (const Error&) {  // a part that one lattice misses another may meet
       if (!refused) refused = std::current_exception();
-      if (++refusals >= kMostRefusals && !(best_error < kMostOff)) break;
+      if (++refusals >= kMostRefusals && !(least.error < kMostOff)) break;
       continue;
     }
     const auto count = static_cast<double>(filling.tets());
-    const double error = std::abs(count / wanted - 1.0);
-    if (error < best_error) {
-      best_error = error;
+    Fault fault{0, 0, std::abs(count / wanted - 1.0)};
+    fault.missed = std::max(fault.error - kCountTolerance, 0.0);
+    if (wanted <= kSmall && fault.missed == 0 && !job.is_embedded())
+      for (std::size_t s = 0; s < filling.meshes.size(); ++s)
+        fault.tunnels += count_new_tunnels(filling.meshes[s], job.solids[s]);
+    if (fault < least) {
+      least = fault;
       best = std::move(filling);
       best_lines = lines;
     }
-    if (best_error <= kCountTolerance) break;
+    if (least.missed == 0 && (least.tunnels == 0 || ++perforated > kMostPerforated)) break;
     edge *= std::cbrt(std::max(count, 1.0) / wanted);
   }
-  if (refused && !(best_error < kMostOff)) std::rethrow_exception(refused);  // far more than asked is no answer
+  if (refused && !(least.error < kMostOff)) std::rethrow_exception(refused);  // far more than asked is no answer
   best_lines.pass_on(job.log);
   if (best.tets() > 0) warn_of_count(job, wanted, best.tets());
   return best;
@@ -316,6 +334,7 @@ void finish_solids(const Job& job, Filling& filling) {
     }
     const ScopedStage stage(job.times, "tetrahedralize/check");
     require_whole(stuffed.mesh, solid.surface, filling.edge, solid.thinnest_part().place(), job.name);
+    warn_of_tunnels(stuffed, solid, job.name, job.log);
     if (job.params.error > 0) continue;  // it says itself what it misses
     if (job.is_graded()) require_most_of(stuffed.mesh, solid, job.name, job.threads);
     warn_of_volume(stuffed.mesh, solid, job.name, job.threads, job.log);

@@ -150,10 +150,11 @@ Index drop_crumbs(StuffedMesh& stuffed, const std::vector<Index>& nearest_triang
       log.info(line);
   }
   if (crumbs.loose > 0)
-    log.warn(
-        fmt::format("body '{}': parts thinner than the lattice (edge {:.4g} m) fell apart: {} loose piece{} beside "
-                    "the main ones. Use a smaller edge or more tets if they should hang together.",
-                    name, stuffed.mesh.lattice.spacing, crumbs.loose, crumbs.loose == 1 ? "" : "s"));
+    log.warn(fmt::format(
+        "body '{}': fell apart: {} loose piece{} beside the main ones, as what joins them is thinner than the "
+        "lattice (edge {:.4g} m) or they only touch at edges and vertices. Use a smaller edge or more tets if "
+        "they should hang together.",
+        name, crumbs.loose, crumbs.loose == 1 ? "" : "s", stuffed.mesh.lattice.spacing));
   return count - crumbs.count;
 }
 

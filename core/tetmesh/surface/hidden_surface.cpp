@@ -1,5 +1,6 @@
 #include "core/tetmesh/surface/hidden_surface.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/mesh/winding_number.h"
@@ -13,6 +14,10 @@ constexpr double kShareOfSize = 1e-5;
 
 /// From this winding number on a point is inside; closed surfaces have integers, the rims of open ones about a half.
 constexpr double kHiddenWinding = 0.75;
+
+/// Pieces of so many steps, or so large a share of the box's diagonal, are judged by their middles and corners.
+constexpr double kTrustedSteps = 4, kTrustedShare = 1.0 / 128;
+constexpr int kMostQuarterings = 10;
 
 /// Whether the solid is on both sides of a triangle's plane at one of its points.
 class HiddenPoint {
@@ -36,8 +41,10 @@ class HiddenPoint {
 SurfaceMesh without_hidden(const SurfaceMesh& surface, const std::vector<std::uint8_t>& suspected, double step,
                            const Threads& threads) {
   const WindingNumber winding(surface.positions, surface.triangles);
-  const HiddenPoint is_hidden(winding, kShareOfSize * used_bounds(surface).diagonal());
-  return without_pieces(surface.positions, surface.triangles, suspected, step, is_hidden, threads);
+  const double size = used_bounds(surface).diagonal();
+  const HiddenPoint is_hidden(winding, kShareOfSize * size);
+  const PieceSizes sizes{step, std::max(kTrustedSteps * step, kTrustedShare * size), kMostQuarterings};
+  return without_pieces(surface.positions, surface.triangles, suspected, sizes, is_hidden, threads);
 }
 
 }  // namespace softreel

@@ -51,7 +51,7 @@ SurfaceMesh HoleCaps::without_caps(const std::vector<Vec3>& points, const std::v
                                    const Threads& threads) const {
   const std::vector<std::uint8_t> suspected = find_far_triangles(points, faces, tree_, limit, threads);
   const LeavesOut is_cap = [this](const std::array<Vec3, 3>&, const Vec3& p) { return contain(p); };
-  return without_pieces(points, faces, suspected, kPiece * limit, is_cap, threads);
+  return without_pieces(points, faces, suspected, {kPiece * limit}, is_cap, threads);
 }
 
 }  // namespace softreel

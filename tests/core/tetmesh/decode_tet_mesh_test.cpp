@@ -284,6 +284,18 @@ TEST(DecodeTetMesh, LeavesOutWhatItHasTwice) {
   EXPECT_NE(decoded.lines[0].find("1 tetrahedra that it has twice"), std::string::npos) << decoded.lines[0];
 }
 
+TEST(DecodeTetMesh, SaysThatPiecesTouchWithoutSharedNodes) {
+  const std::string nodes =
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n8\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0.1 0.2 0.3 0\n"
+      "1 0 0 0\n1 1 1.5 0\n0 1 0 0\n0.1 0.2 0.3 0\nTetrahedra\n2\n1 2 3 4 0\n";
+  const Decoded parted = decode(nodes + "5 6 7 8 0\nEnd\n", ".mesh");
+  ASSERT_EQ(parted.lines.size(), 1U);
+  EXPECT_NE(parted.lines[0].find("2 pieces, which come apart although they touch at 1 faces"), std::string::npos)
+      << parted.lines[0];
+  for (const std::string& line : decode(nodes + "2 6 3 4 0\nEnd\n", ".mesh").lines)
+    EXPECT_EQ(line.find("pieces"), std::string::npos) << line;
+}
+
 TEST(DecodeTetMesh, RefusesTetrahedraThatOverlapAtAFace) {
   TetMesh three = two_tets();  // a third one at the face that the two share
   three.nodes.emplace_back(2, 2, 2);

@@ -1,0 +1,47 @@
+#include "core/tetmesh/quality/tunnels.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/mesh/disjoint_sets.h"
+#include "core/mesh/mesh_topology.h"
+
+namespace softreel {
+namespace {
+
+Index corner_at(std::span<const Triangle> triangles, Index triangle, Index vertex) {
+  const Triangle& corners = triangles[static_cast<std::size_t>(triangle)];
+  return 3 * triangle + static_cast<Index>(std::find(corners.begin(), corners.end(), vertex) - corners.begin());
+}
+
+}  // namespace
+
+std::optional<Index> count_tunnels(std::span<const Triangle> triangles) {
+  const std::vector<HalfEdge> sides = sorted_half_edges(triangles);
+  DisjointSets corners(3 * triangles.size()), pieces(triangles.size());
+  std::int64_t edges = 0;
+  bool is_closed = true;
+  for_each_edge(std::span(sides), [&](std::span<const HalfEdge> edge) {
+    ++edges;
+    if (edge.size() != 2) {
+      is_closed = false;
+      return;
+    }
+    pieces.join(edge[0].triangle, edge[1].triangle);
+    for (const Index vertex : {edge[0].low, edge[0].high})
+      corners.join(corner_at(triangles, edge[0].triangle, vertex), corner_at(triangles, edge[1].triangle, vertex));
+  });
+  if (!is_closed) return std::nullopt;
+  std::int64_t vertices = 0, faces = 0, count = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (is_collapsed(triangles[t])) continue;
+    const auto triangle = static_cast<Index>(t);
+    ++faces;
+    count += pieces.root(triangle) == triangle ? 1 : 0;
+    for (Index corner = 3 * triangle; corner < 3 * triangle + 3; ++corner)
+      vertices += corners.root(corner) == corner ? 1 : 0;
+  }
+  return static_cast<Index>(count - (vertices - edges + faces) / 2);
+}
+
+}  // namespace softreel
