@@ -12,6 +12,7 @@
 #include "tool/bodies/shot_inputs.h"
 #include "tool/bodies/simulate_key.h"
 #include "tool/cache/atomic_file.h"
+#include "tool/report/energy_growth.h"
 #include "tool/shot/shot_load.h"
 #include "tool/stages/picture_stage.h"
 #include "tool/stages/settings_snapshot.h"
@@ -132,6 +133,7 @@ RunReport Session::report(const std::string& command, const ShotRun& run) const 
   report.bodies = report_bodies(run);
   report.simulation = run.counts(frames_.last);
   report.energies = find_energies(run, report_path());
+  for (const std::string& line : find_energy_growth(run, report.energies)) log_.warn(line);
   report.stages = times_.entries();
   return report;
 }
