@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,10 +49,10 @@ int run_plan(const ShotOptions& options);
 
 /// What a command would make of bodies at some frames, beside pictures.
 struct PlannedWork {
-  std::vector<int> frames;         ///< at which they are needed, from the first on
-  std::vector<std::string> lines;  ///< for people
-  int missing = 0, of = 0;         ///< files; of = 0: none are made
-  int outdated = 0;                ///< files that would be removed
+  std::vector<int> frames;          ///< at which they are needed, from the first on
+  std::vector<std::string> lines;   ///< for people
+  int missing = 0, of = 0;          ///< files; of = 0: none are made
+  std::optional<int> outdated = 0;  ///< files that would be removed; none: only the work itself finds out
 };
 
 /// The same of another command than run_render.

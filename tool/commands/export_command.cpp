@@ -148,11 +148,11 @@ PlannedWork planned(std::vector<ExportSeries> series, const std::string& folder)
     work.frames.insert(work.frames.end(), plan.frames.begin(), plan.frames.end());
     work.missing += plan.missing;
     work.of += plan.of;
-    work.outdated += plan.outdated;
+    *work.outdated += plan.outdated;
     work.lines.push_back(
         fmt::format("export {} of {} {} files: {}", plan.missing, plan.of, one.format().name, one.made_line()));
   }
-  if (work.outdated > 0) work.lines.push_back(fmt::format("replace {} outdated files in {}", work.outdated, folder));
+  if (*work.outdated > 0) work.lines.push_back(fmt::format("replace {} outdated files in {}", *work.outdated, folder));
   return work;
 }
 

@@ -279,10 +279,11 @@ int run_plan(const ShotOptions& options, const std::function<PlannedWork(ShotRun
   const PlannedWork work = find_work(run, outputs);
   Plan plan;
   add_simulation(run, work.frames, session.frames().last, session.context().threads.count() / 2.0, plan);
-  plan.complete = work.missing == 0 && work.outdated == 0 && plan.simulated == 0;
+  plan.complete = work.missing == 0 && work.outdated == 0 && plan.simulated == 0;  // none: unknown
   if (options.json) {
     nlohmann::ordered_json json = begin_json(session, plan);
-    if (work.of > 0) json["files"] = {{"missing", work.missing}, {"of", work.of}, {"outdated", work.outdated}};
+    if (work.of > 0) json["files"] = {{"missing", work.missing}, {"of", work.of}};
+    if (work.of > 0 && work.outdated) json["files"]["outdated"] = *work.outdated;
     json["expected"] = expected_json(plan);
     std::printf("%s\n", json_text(json).c_str());
     return 0;

@@ -173,6 +173,7 @@ class Playblast {
 PlannedWork planned(const Shot& shot, const FrameSpan& frames, const Outputs& outputs) {
   PlannedWork work;
   work.of = frames.count();
+  work.outdated = std::nullopt;
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     work.frames.push_back(frame);
     work.missing += std::filesystem::exists(outputs.frame_path(frame, "png")) ? 0 : 1;

@@ -160,7 +160,9 @@ void Session::finish(const RunReport& report) {
   // Not after some of the frames: a farm has many such runs, and the manifest is as long as the shot.
   if (outputs_ != nullptr && is_whole()) outputs_->fold();
   const std::filesystem::path folder(shot_.output.directory);
-  write_file((folder / (shot_.settings.name + ".resolved.toml")).string(), to_toml(shot_));
+  const std::string resolved = (folder / (shot_.settings.name + ".resolved.toml")).string();
+  std::error_code none;
+  if (!std::filesystem::equivalent(resolved, shot_.path, none)) write_file(resolved, to_toml(shot_));  // it was given
   write_file(report_path(), to_json(report) + "\n");
   if (options_.json) {
     std::printf("%s\n", to_json(report).c_str());

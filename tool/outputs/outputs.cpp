@@ -63,7 +63,17 @@ void Outputs::set_settings(const SettingsSnapshot& settings) {
 }
 
 void Outputs::protect(const std::vector<std::string>& inputs) {
-  for (const std::string& path : inputs) protected_.insert(place_of(path));
+  for (const std::string& path : inputs) {
+    constexpr int kMostLinks = 40;  // as the system follows
+    fs::path at = path;
+    std::error_code none;
+    for (int link = 0; link <= kMostLinks; ++link) {
+      protected_.insert(place_of(at.string()));
+      if (!fs::is_symlink(at, none)) break;
+      const fs::path to = fs::read_symlink(at, none);
+      at = to.is_absolute() ? to : at.parent_path() / to;
+    }
+  }
 }
 
 void Outputs::require_free(const std::string& path) const {

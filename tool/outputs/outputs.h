@@ -40,7 +40,8 @@ class Outputs {
   /// What files written from now on are made with. Throws input_error for what is no UTF-8.
   void set_settings(const SettingsSnapshot& settings);
 
-  /// Files of these paths are neither replaced nor removed: whoever tries gets an input_error.
+  /// Files of these paths, and those that links there lead to, are neither replaced nor removed: whoever tries gets an
+  /// input_error.
   void protect(const std::vector<std::string>& inputs);
   /// Throws that for a path of theirs.
   void require_free(const std::string& path) const;

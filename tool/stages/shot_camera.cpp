@@ -19,6 +19,11 @@ Vec3f upright(const Camera& camera) {
   return Vec3f(0, 0, forward.y() < 0 ? -1.0f : 1.0f);
 }
 
+/// What a picture is taken with cannot tell the two places apart.
+bool is_same_place(const Vec3& a, const Vec3& b) {
+  return a.cast<float>() == b.cast<float>();
+}
+
 /// One frame on at the pace since the frame before.
 Vec3 led_on(const Track<Vec3>& track, double frame) {
   const Vec3 now = track.at(frame);
@@ -37,7 +42,7 @@ Camera camera_at(const CameraSettings& settings, double frame, const Bounds& res
   if (settings.mode == CameraMode::Place) {
     camera.position = settings.position.at(frame).cast<float>();
     camera.target = settings.target.at(frame).cast<float>();
-    if (!((camera.target - camera.position).norm() > 0))
+    if (camera.target == camera.position)
       throw input_error(
           fmt::format("{}: the camera stands in its target at frame {}.\n"
                       "  Accepted: keys that keep the two apart. Move camera.position or camera.target.",
@@ -96,7 +101,10 @@ std::vector<Camera> camera_motion_at(const CameraSettings& settings, const Rende
 }
 
 Camera next_camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
-  return camera_at(settings, last_cut(settings, frame, frame + 1) ? frame : frame + 1, rest_bounds, aspect);
+  const bool stays = last_cut(settings, frame, frame + 1) ||
+                     (settings.mode == CameraMode::Place &&
+                      is_same_place(settings.position.at(frame + 1), settings.target.at(frame + 1)));
+  return camera_at(settings, stays ? frame : frame + 1, rest_bounds, aspect);
 }
 
 Camera camera_led_on(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect) {
@@ -104,7 +112,7 @@ Camera camera_led_on(const CameraSettings& settings, double frame, const Bounds&
   if (settings.mode == CameraMode::Place) {
     led.position = constant_track(led_on(settings.position, frame));
     led.target = constant_track(led_on(settings.target, frame));
-    if (led.position.at(0) == led.target.at(0)) led = settings;
+    if (is_same_place(led.position.at(0), led.target.at(0))) led = settings;
   }
   // By its ratio, as a zoom goes and stays above nothing.
   const double focal = settings.focal_length_mm.at(frame);

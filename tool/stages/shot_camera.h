@@ -22,8 +22,8 @@ std::optional<double> last_cut(const CameraSettings& settings, double after, dou
 std::vector<Camera> camera_motion_at(const CameraSettings& settings, const RenderSettings& render, double frame,
                                      const Bounds& rest_bounds, double aspect);
 
-/// The camera of the frame after this one, for motion vectors. It stays where a cut lies between them: what the next
-/// shot shows has not moved there.
+/// The camera of the frame after this one, for motion vectors. It stays where a cut lies between them, as what the next
+/// shot shows has not moved there, and where it would stand in its target.
 Camera next_camera_at(const CameraSettings& settings, double frame, const Bounds& rest_bounds, double aspect);
 
 /// The same after the last frame, where bodies go on as they came from the frame before: so does the camera, whatever

@@ -102,9 +102,10 @@ void warn_of_tunnels(const StuffedMesh& stuffed, const Solid& solid, const std::
   const Index tunnels = count_new_tunnels(stuffed, solid);
   if (tunnels == 0) return;
   log.warn(fmt::format(
-      "body '{}': the tetrahedra have {} tunnel{} that {} does not have: walls about as thin as they are were "
-      "perforated. Accepted: this mesh, as it is. Set a smaller edge or more tets, or mode = \"embedded\", "
-      "which covers them.",
+      "body '{}': the tetrahedra have {} tunnel{} that {} does not have: a wall about as thin as they are was "
+      "perforated, "
+      "or limbs that come near each other, or overlap, grew together. Accepted: this mesh, as it is. A smaller edge or "
+      "more tets mend what is thin or near, mode = \"embedded\" covers it.",
       name, tunnels, tunnels == 1 ? "" : "s", solid.parts.parts.front().place()));
 }
 

@@ -34,8 +34,9 @@ bool is_whole(const TetMesh& mesh, const SurfaceMesh& surface);
 void require_whole(const TetMesh& mesh, const SurfaceMesh& solid, double edge, const std::string& part,
                    const std::string& name);
 
-/// Tunnels of a solid's boundary that its surface does not have: a thin wall is perforated. 0 where that is not known,
-/// as the surface is open, or of several parts, which together may have tunnels that none of them has.
+/// Tunnels of a solid's boundary that its surface does not have: a thin wall is perforated, or limbs grew together. 0
+/// where that is not known, as the surface is open, or of several parts, which together may have tunnels that none of
+/// them has.
 Index count_new_tunnels(const StuffedMesh& stuffed, const Solid& solid);
 /// Warns of them.
 void warn_of_tunnels(const StuffedMesh& stuffed, const Solid& solid, const std::string& name, const Log& log);

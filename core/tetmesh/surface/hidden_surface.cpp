@@ -5,6 +5,7 @@
 
 #include "core/mesh/winding_number.h"
 #include "core/tetmesh/surface/surface_pieces.h"
+#include "core/tetmesh/triangle_tree.h"
 
 namespace softreel {
 namespace {
@@ -36,15 +37,51 @@ class HiddenPoint {
   double offset_;
 };
 
+bool is_beside_plane(const TriangleCorners& plane, const TriangleCorners& x, double margin) {
+  const Vec3 normal = (plane[1] - plane[0]).cross(plane[2] - plane[0]).normalized();
+  const auto height = [&](std::size_t k) { return normal.dot(x[k] - plane[0]); };
+  const double a = height(0), b = height(1), c = height(2);
+  return std::min({a, b, c}) > margin || std::max({a, b, c}) < -margin;
+}
+
+/// Whether a triangle of the surface comes within `margin` of a piece of another one, by the planes and boxes of both:
+/// only there does the piece go from the outside into a solid. Those that share an edge with the triangle go on from
+/// it.
+bool is_crossed(const TriangleTree& tree, const TriangleCorners& triangle, const TriangleCorners& piece,
+                double margin) {
+  const Vec3 low = piece[0].cwiseMin(piece[1]).cwiseMin(piece[2]) - Vec3::Constant(margin);
+  const Vec3 high = piece[0].cwiseMax(piece[1]).cwiseMax(piece[2]) + Vec3::Constant(margin);
+  bool crossed = false;
+  const auto meets = [&](const Vec3& min, const Vec3& max) {
+    return !crossed && (min.array() <= high.array()).all() && (max.array() >= low.array()).all();
+  };
+  tree.visit(meets, [&](Index place) {
+    const TriangleCorners other = tree.corners(place);
+    const auto is_shared = [&](const Vec3& corner) {
+      return std::find(triangle.begin(), triangle.end(), corner) != triangle.end();
+    };
+    if (std::count_if(other.begin(), other.end(), is_shared) >= 2) return;
+    crossed = crossed || !(is_beside_plane(piece, other, margin) || is_beside_plane(other, piece, margin));
+  });
+  return crossed;
+}
+
 }  // namespace
 
 SurfaceMesh without_hidden(const SurfaceMesh& surface, const std::vector<std::uint8_t>& suspected, double step,
                            const Threads& threads) {
   const WindingNumber winding(surface.positions, surface.triangles);
-  const double size = used_bounds(surface).diagonal();
-  const HiddenPoint is_hidden(winding, kShareOfSize * size);
-  const PieceSizes sizes{step, std::max(kTrustedSteps * step, kTrustedShare * size), kMostQuarterings};
-  return without_pieces(surface.positions, surface.triangles, suspected, sizes, is_hidden, threads);
+  const double size = used_bounds(surface).diagonal(), offset = kShareOfSize * size;
+  const TriangleTree tree(surface.positions, surface.triangles);
+  PieceRules rules;
+  rules.leaves_out = HiddenPoint(winding, offset);
+  rules.may_differ = [&](const TriangleCorners& triangle, const TriangleCorners& piece) {
+    return is_crossed(tree, triangle, piece, 2 * offset);
+  };
+  rules.border = step;
+  rules.trusted = std::max(kTrustedSteps * step, kTrustedShare * size);
+  rules.most_quarterings = kMostQuarterings;
+  return without_pieces(surface.positions, surface.triangles, suspected, rules, threads);
 }
 
 }  // namespace softreel

@@ -50,8 +50,10 @@ bool HoleCaps::contain(const Vec3& p) const {
 SurfaceMesh HoleCaps::without_caps(const std::vector<Vec3>& points, const std::vector<Triangle>& faces, double limit,
                                    const Threads& threads) const {
   const std::vector<std::uint8_t> suspected = find_far_triangles(points, faces, tree_, limit, threads);
-  const LeavesOut is_cap = [this](const std::array<Vec3, 3>&, const Vec3& p) { return contain(p); };
-  return without_pieces(points, faces, suspected, {kPiece * limit}, is_cap, threads);
+  PieceRules rules;
+  rules.leaves_out = [this](const TriangleCorners&, const Vec3& p) { return contain(p); };
+  rules.border = kPiece * limit;
+  return without_pieces(points, faces, suspected, rules, threads);
 }
 
 }  // namespace softreel

@@ -11,14 +11,17 @@
 
 namespace softreel {
 
-/// Whether a point of a triangle, whose corners come first, is left out. Called from several threads.
-using LeavesOut = std::function<bool(const std::array<Vec3, 3>&, const Vec3&)>;
+using TriangleCorners = std::array<Vec3, 3>;
 
-/// Lengths of edges, m. A triangle is judged by its middle where its corners agree and its edges are at most `trusted`
-/// long: what is left out may lie inside of a larger one and reach to none of them. Others are quartered until their
-/// edges are at most `border` long.
-struct PieceSizes {
-  double border = 0;
+/// What is left out of triangles, and how finely that is looked for. Both are called from several threads.
+struct PieceRules {
+  /// Whether a point of a piece is left out.
+  std::function<bool(const TriangleCorners& piece, const Vec3& point)> leaves_out;
+  /// Whether the border of what is left out may pass through a piece of a triangle; none: nobody knows.
+  std::function<bool(const TriangleCorners& triangle, const TriangleCorners& piece)> may_differ;
+  double border = 0;  ///< m; edges of the pieces along the border
+  /// m; pieces of such edges, which may differ, are judged by their middles where their corners agree: what is left out
+  /// may lie inside of a larger one and reach to none of them.
   double trusted = std::numeric_limits<double>::infinity();
   int most_quarterings = 6;
 };
@@ -26,7 +29,6 @@ struct PieceSizes {
 /// The triangles without the pieces that are left out. Those for which suspected[t] is 0 are kept unseen. Positions
 /// stay, new ones come after them; only positions and triangles are filled in.
 SurfaceMesh without_pieces(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                           const std::vector<std::uint8_t>& suspected, const PieceSizes& sizes,
-                           const LeavesOut& leaves_out, const Threads& threads);
+                           const std::vector<std::uint8_t>& suspected, const PieceRules& rules, const Threads& threads);
 
 }  // namespace softreel

@@ -294,6 +294,10 @@ TEST(DecodeTetMesh, SaysThatPiecesTouchWithoutSharedNodes) {
       << parted.lines[0];
   for (const std::string& line : decode(nodes + "2 6 3 4 0\nEnd\n", ".mesh").lines)
     EXPECT_EQ(line.find("pieces"), std::string::npos) << line;
+  const std::string apart =
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n8\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0.1 0.2 0.3 0\n"
+      "5 0 0 0\n6 0 0 0\n5 1 0 0\n5.1 0.2 0.3 0\nTetrahedra\n2\n1 2 3 4 0\n5 6 7 8 0\nEnd\n";
+  EXPECT_TRUE(decode(apart, ".mesh").lines.empty()) << "two bodies";
 }
 
 TEST(DecodeTetMesh, RefusesTetrahedraThatOverlapAtAFace) {

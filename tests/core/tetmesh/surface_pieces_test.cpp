@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/tetmesh/surface/hidden_surface.h"
+#include "tests/support/damaged_shapes.h"
+
 namespace softreel {
 namespace {
 
@@ -22,8 +25,11 @@ double area_of(const SurfaceMesh& mesh) {
 }
 
 SurfaceMesh without_disk(const Vec3& center, double radius, double step) {
-  const auto in_disk = [&](const std::array<Vec3, 3>&, const Vec3& p) { return (p - center).norm() < radius; };
-  return without_pieces(kCorners, {{0, 1, 2}}, {1}, {step, 4 * step}, in_disk, Threads(1));
+  PieceRules rules;
+  rules.leaves_out = [&](const TriangleCorners&, const Vec3& p) { return (p - center).norm() < radius; };
+  rules.border = step;
+  rules.trusted = 4 * step;
+  return without_pieces(kCorners, {{0, 1, 2}}, {1}, rules, Threads(1));
 }
 
 TEST(SurfacePieces, LeaveOutWhatLiesInsideATriangleAndReachesNoCorner) {
@@ -37,16 +43,33 @@ TEST(SurfacePieces, LeaveOutWhatLiesInsideATriangleAndReachesNoCorner) {
 
 TEST(SurfacePieces, KeepWhatReachesNoCornerAroundWhatIsLeftOut) {
   // All but a disk is left out; the corners and the middle are.
-  const auto outside = [](const std::array<Vec3, 3>&, const Vec3& p) { return (p - Vec3(2.4, 0.5, 0)).norm() >= 0.4; };
+  PieceRules rules;
+  rules.leaves_out = [](const TriangleCorners&, const Vec3& p) { return (p - Vec3(2.4, 0.5, 0)).norm() >= 0.4; };
+  rules.border = 0.1;
+  rules.trusted = 0.4;
   const double disk = std::numbers::pi * 0.16;
-  EXPECT_NEAR(area_of(without_pieces(kCorners, {{0, 1, 2}}, {1}, {0.1, 0.4}, outside, Threads(1))), disk, 0.3 * disk);
+  EXPECT_NEAR(area_of(without_pieces(kCorners, {{0, 1, 2}}, {1}, rules, Threads(1))), disk, 0.3 * disk);
 }
 
 TEST(SurfacePieces, AreWholeTrianglesWhereNothingIsLeftOut) {
   EXPECT_EQ(without_disk(Vec3(9, 9, 0), 1, 0.01).triangles.size(), 1U);
   EXPECT_EQ(without_disk(Vec3(0, 0, 0), 99, 0.01).triangles.size(), 0U);
-  const auto all = [](const std::array<Vec3, 3>&, const Vec3&) { return true; };
-  EXPECT_EQ(without_pieces(kCorners, {{0, 1, 2}}, {0}, {0.01}, all, Threads(1)).triangles.size(), 1U) << "unsuspected";
+  PieceRules all;
+  all.leaves_out = [](const TriangleCorners&, const Vec3&) { return true; };
+  all.border = 0.01;
+  EXPECT_EQ(without_pieces(kCorners, {{0, 1, 2}}, {0}, all, Threads(1)).triangles.size(), 1U) << "unsuspected";
+}
+
+TEST(SurfacePieces, OfOverlappingBlocksAreWithoutWhatIsHiddenInsideLargeTriangles) {
+  // A rod through the middle of the top of a block, as far from all corners of its two triangles as it can be.
+  const SurfaceMesh block = test::block(Vec3(1, 0.2, 1), Vec3::Zero());
+  const SurfaceMesh rod = test::block(Vec3(0.05, 0.3, 0.05), Vec3(0.45, 0.3, -0.2));
+  const SurfaceMesh both = test::with(block, rod);
+  const SurfaceMesh visible =
+      without_hidden(both, std::vector<std::uint8_t>(both.triangles.size(), 1), 0.01, Threads(1));
+  const double hidden = 0.1 * 0.1 + 4 * 0.1 * 0.2 + 0.1 * 0.1;  // the hole, and of the rod its sides and one end
+  EXPECT_NEAR(area_of(visible), area_of(both) - hidden, 0.01 * 1.0);
+  EXPECT_LT(visible.triangles.size(), 3000U) << "what nothing crosses stays whole";
 }
 
 }  // namespace

@@ -227,7 +227,10 @@ TEST_F(ExportProgram, NeverTakesThePlaceOfWhatTheShotReads) {
     EXPECT_FALSE(exists(file("ball.ball.pc2"))) << "refused before the work";
   }
   EXPECT_EQ(export_shot(as_mesh + "--format obj --frames 3-4").status, 0) << "files beside it are free";
-  // By way of a link to the folder too.
+  // By way of a link to the file, or to the folder, too.
+  std::filesystem::create_symlink(file("ball.ball.0002.obj"), folder_ + "/pose.obj");
+  EXPECT_EQ(export_shot(fmt::format("--set 'body.ball.mesh=\"{}/pose.obj\"' --format obj", folder_)).status, 2);
+  EXPECT_EQ(bytes("ball.ball.0002.obj"), pose);
   std::filesystem::create_directory_symlink(folder_ + "/out", folder_ + "/elsewhere");
   const Outcome linked = run(
       fmt::format("softreel export {0}/shot.toml --output {0}/elsewhere --quiet {1} --format obj", folder_, as_mesh));

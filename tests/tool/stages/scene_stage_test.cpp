@@ -135,6 +135,11 @@ TEST(CameraLedOn, GoesOnAsFromTheFrameBefore) {
   EXPECT_EQ(camera_led_on(settings, 50, {}, 1), camera_at(settings, 50, {}, 1)) << "a cut is no pace";
   settings.target.keys = {{1, Vec3(21, 0, 4), Ease::Linear}};
   EXPECT_EQ(camera_led_on(settings, 60, {}, 1).position, Vec3f(20, 0, 4)) << "not into its target";
+  settings.position.keys = {{1, Vec3(0, 0, 0.3), Ease::Linear}, {2, Vec3(0, 0, 0.2), Ease::Linear}};
+  settings.target.keys = {{1, Vec3(0, 0, 0.1), Ease::Linear}};  // 2 * 0.2 - 0.3 is another double, and the same float
+  EXPECT_EQ(camera_led_on(settings, 2, {}, 1).position, Vec3f(0, 0, 0.2f));
+  settings.position.keys.back() = {2, Vec3(0, 0, 0.1), Ease::Linear};
+  EXPECT_EQ(next_camera_at(settings, 1, {}, 1), camera_at(settings, 1, {}, 1)) << "not of a frame that it cannot show";
 }
 
 TEST(CameraAt, IsRefusedInItsTarget) {
