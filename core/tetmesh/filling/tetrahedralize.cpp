@@ -4,7 +4,6 @@
 #include <cmath>
 #include <exception>
 #include <tuple>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -228,7 +227,6 @@ Filling fill_with_count(const Job& job, double wanted) {
   Fault least;
   std::exception_ptr refused;
   int refusals = 0, perforated = 0;
-  Index last_tunnels = -1;
   constexpr int kSteps = 6, kStepsOfSmall = 24, kMostRefusals = 2, kMostPerforated = 4;
   constexpr double kMostOff = 0.25, kSmall = 50000;
   const int steps = wanted <= kSmall ? kStepsOfSmall : kSteps;
@@ -256,9 +254,7 @@ Filling fill_with_count(const Job& job, double wanted) {
       best = std::move(filling);
       best_lines = lines;
     }
-    // The same again are of the body: limbs that overlap, say.
-    const bool are_same = fault.missed == 0 && std::exchange(last_tunnels, fault.tunnels) == fault.tunnels;
-    if (least.missed == 0 && (least.tunnels == 0 || are_same || ++perforated > kMostPerforated)) break;
+    if (least.missed == 0 && (least.tunnels == 0 || ++perforated > kMostPerforated)) break;
     edge *= std::cbrt(std::max(count, 1.0) / wanted);
   }
   if (refused && !(least.error < kMostOff)) std::rethrow_exception(refused);  // far more than asked is no answer
