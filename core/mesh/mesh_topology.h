@@ -1,6 +1,7 @@
 /// Edges and pieces of a triangle surface whose vertices were welded where they are exactly equal.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,12 @@ void for_each_edge(std::span<const HalfEdge> half_edges, const Body& body) {
 
 /// Whether the triangles of an edge run along it as often in one direction as in the other; not at rims.
 bool is_balanced(std::span<const HalfEdge> edge);
+
+/// Number of the corner, three a triangle, at which a triangle has a vertex of its own.
+inline Index corner_of(std::span<const Triangle> triangles, Index triangle, Index vertex) {
+  const Triangle& corners = triangles[static_cast<std::size_t>(triangle)];
+  return 3 * triangle + static_cast<Index>(std::find(corners.begin(), corners.end(), vertex) - corners.begin());
+}
 
 /// Six times the signed volume under triangle (a, b, c) as seen from the origin.
 inline double signed_volume6(const Vec3& a, const Vec3& b, const Vec3& c) {

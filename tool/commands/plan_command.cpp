@@ -23,7 +23,7 @@
 namespace softreel {
 namespace {
 
-/// Measured on 2 cores at 2.6 GHz with the shots of presets/ (README, "How fast"); a plan is right within a factor of
+/// Measured on 2 cores with the shots of presets/ (README, "How fast"); a plan is right within a factor of
 /// two or so there, and scales with the machine elsewhere.
 constexpr double kStepSecondsPerTet = 3.2e-7;  ///< one dynamic step with one solve, two threads
 constexpr double kStaticStepsPerFrame = 6.5;   ///< a static frame costs about this many steps

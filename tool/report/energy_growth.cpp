@@ -57,12 +57,11 @@ std::vector<std::string> find_energy_growth(const ShotRun& run, const std::vecto
     const auto own = std::find_if(energies.begin(), energies.end(), [&](const auto& one) { return one.body == name; });
     if (own == energies.end() || has_springs(constraints, shot.settings.last_frame)) continue;  // or glue joins it
     if (const auto growth = find_growth(*own, first_quiet_frame(shot, constraints)))
-      lines.push_back(
-          fmt::format("body '{}' gains energy from nothing: {:.3g} J of motion and deformation after frame {}, {:.3g} "
-                      "J at frame {}. "
-                      "The steps are too long for it. Use more solver.substeps, damping, or an integrator that damps "
-                      "(euler, bdf2).",
-                      name, growth->before, growth->first, growth->after, growth->last));
+      lines.push_back(fmt::format(
+          "body '{}' gains energy from nothing: {:.3g} J of motion and deformation after frame {}, {:.3g} "
+          "J at frame {}. The steps are too long for it. Use more solver.substeps, damping, or an integrator "
+          "that damps (euler, bdf2).",
+          name, growth->before, growth->first, growth->after, growth->last));
   }
   return lines;
 }

@@ -64,6 +64,15 @@ void require_quality(const TetMesh& mesh, const AngleBounds& bounds, const std::
       quality.min_dihedral_tet, quality.max_dihedral_tet, bounds.min, bounds.max));
 }
 
+void say_joined_limbs(const TetMesh& mesh, const std::string& name, const Log& log) {
+  const BoundaryDefects defects = check_boundary(mesh.nodes, find_boundary(mesh));
+  if (!defects.none())
+    log.info(fmt::format(
+        "body '{}': limbs side by side in one lattice tetrahedron join: its boundary is no manifold at {} edges "
+        "and {} vertices, the first at ({:.6g}, {:.6g}, {:.6g})",
+        name, defects.edges, defects.vertices, defects.first[0], defects.first[1], defects.first[2]));
+}
+
 void require_manifold(const TetMesh& mesh, const std::string& name) {
   const BoundaryDefects defects = check_boundary(mesh.nodes, find_boundary(mesh));
   if (defects.none()) return;
@@ -103,9 +112,8 @@ void warn_of_tunnels(const StuffedMesh& stuffed, const Solid& solid, const std::
   if (tunnels == 0) return;
   log.warn(fmt::format(
       "body '{}': the tetrahedra have {} tunnel{} that {} does not have: a wall about as thin as they are was "
-      "perforated, "
-      "or limbs that come near each other, or overlap, grew together. Accepted: this mesh, as it is. A smaller edge or "
-      "more tets mend what is thin or near, mode = \"embedded\" covers it.",
+      "perforated, or limbs that come near each other, or overlap, grew together. Accepted: this mesh, as it is. A "
+      "smaller edge or more tets mend what is thin or near, mode = \"embedded\" covers it.",
       name, tunnels, tunnels == 1 ? "" : "s", solid.parts.parts.front().place()));
 }
 

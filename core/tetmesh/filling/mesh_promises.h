@@ -23,6 +23,9 @@ void require_quality(const TetMesh& mesh, const AngleBounds& bounds, const std::
 /// Throws work_error if the boundary is no manifold.
 void require_manifold(const TetMesh& mesh, const std::string& name);
 
+/// Says where that of an embedded mesh is none.
+void say_joined_limbs(const TetMesh& mesh, const std::string& name, const Log& log);
+
 /// Pieces that are connected through faces.
 Index count_pieces(const TetMesh& mesh);
 

@@ -16,7 +16,6 @@
 #include "core/tetmesh/filling/waiting_log.h"
 #include "core/tetmesh/graded/graded_stuffing.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
-#include "core/tetmesh/quality/boundary_check.h"
 #include "core/tetmesh/quality/tet_quality.h"
 #include "core/tetmesh/stuffing/boundary_mending.h"
 #include "core/tetmesh/stuffing/mesh_pieces.h"
@@ -93,12 +92,9 @@ StuffedMesh cover_surface(const Job& job, double edge, const Vec3& shift) {
       "body '{}': embedded in {} whole lattice tetrahedra, {} of them cut by the surface, {} of those copies "
       "where parts of the body lie in one",
       job.name, cover.mesh.tets.size(), cover.cut_cells + cover.copies, cover.copies));
-  const BoundaryDefects defects = check_boundary(cover.mesh.nodes, find_boundary(cover.mesh));
-  if (cover.branches > 0 || !defects.none())
-    job.log.info(
-        fmt::format("body '{}': limbs side by side in one lattice tetrahedron join: at {} faces, {} edges of the "
-                    "boundary and {} of its vertices",
-                    job.name, cover.branches, defects.edges, defects.vertices));
+  if (cover.branches > 0)
+    job.log.info(fmt::format("body '{}': at {} places limbs side by side in one lattice tetrahedron join", job.name,
+                             cover.branches));
   return {std::move(cover.mesh), {}, {}};
 }
 
@@ -389,7 +385,7 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
   TetMesh mesh = join_meshes(filling.meshes);
   const ScopedStage stage(times, "tetrahedralize/check");
   require_quality(mesh, embedded ? kCellAngles : job.is_graded() ? kGradedAngles : kUniformAngles, name, threads);
-  if (!embedded) require_manifold(mesh, name);
+  embedded ? say_joined_limbs(mesh, name, log) : require_manifold(mesh, name);
   return mesh;
 }
 

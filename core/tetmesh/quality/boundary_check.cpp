@@ -9,11 +9,6 @@
 namespace softreel {
 namespace {
 
-Index corner_of(std::span<const Triangle> triangles, Index triangle, Index node) {
-  const Triangle& corners = triangles[at(triangle)];
-  return 3 * triangle + static_cast<Index>(std::find(corners.begin(), corners.end(), node) - corners.begin());
-}
-
 /// Joins the corners of triangles that belong to one fan; says where edges forbid that.
 BoundaryDefects join_fans(const std::vector<Vec3>& nodes, std::span<const Triangle> triangles, DisjointSets& corners) {
   BoundaryDefects defects;

@@ -1,20 +1,11 @@
 #include "core/tetmesh/quality/tunnels.h"
 
-#include <algorithm>
 #include <vector>
 
 #include "core/mesh/disjoint_sets.h"
 #include "core/mesh/mesh_topology.h"
 
 namespace softreel {
-namespace {
-
-Index corner_at(std::span<const Triangle> triangles, Index triangle, Index vertex) {
-  const Triangle& corners = triangles[static_cast<std::size_t>(triangle)];
-  return 3 * triangle + static_cast<Index>(std::find(corners.begin(), corners.end(), vertex) - corners.begin());
-}
-
-}  // namespace
 
 std::optional<Index> count_tunnels(std::span<const Triangle> triangles) {
   const std::vector<HalfEdge> sides = sorted_half_edges(triangles);
@@ -29,7 +20,7 @@ std::optional<Index> count_tunnels(std::span<const Triangle> triangles) {
     }
     pieces.join(edge[0].triangle, edge[1].triangle);
     for (const Index vertex : {edge[0].low, edge[0].high})
-      corners.join(corner_at(triangles, edge[0].triangle, vertex), corner_at(triangles, edge[1].triangle, vertex));
+      corners.join(corner_of(triangles, edge[0].triangle, vertex), corner_of(triangles, edge[1].triangle, vertex));
   });
   if (!is_closed) return std::nullopt;
   std::int64_t vertices = 0, faces = 0, count = 0;

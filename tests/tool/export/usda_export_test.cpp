@@ -14,6 +14,14 @@ namespace {
 using testing::UsdPrim;
 using testing::UsdValue;
 
+/// The file of one body at one frame.
+auto usda_of(const std::string& name, const SurfaceMesh& mesh) {
+  testing::FormatRun run("usda");
+  run.add_body(name, mesh);
+  run.append(1, mesh.positions);
+  return run.finish();
+}
+
 TEST(UsdaExport, PointsAreTheNearestFloatsInFileOrderAtEverySample) {
   const SurfaceMesh mesh = testing::patchwork();
   testing::FormatRun run("usda");
@@ -91,10 +99,7 @@ TEST(UsdaExport, MaterialsOfFacesAreSubsetsOfFacesBesideTheirGroups) {
   mesh.polygons.polygon_groups.assign(mesh.polygons.size(), 0);
   mesh.polygons.polygon_materials.assign(mesh.polygons.size(), -1);
   mesh.polygons.polygon_materials.back() = 1;
-  testing::FormatRun run("usda");
-  run.add_body("box", mesh);
-  run.append(1, mesh.positions);
-  const auto stage = testing::read_usda(run.finish());
+  const auto stage = testing::read_usda(usda_of("box", mesh));
   const UsdPrim& red = stage->child("shot/box/red");
   EXPECT_EQ(red.property("elementType").value.text, "face");
   EXPECT_EQ(red.property("indices").value.doubles(), std::vector<double>({static_cast<double>(polygons - 1)}));
@@ -104,10 +109,7 @@ TEST(UsdaExport, MaterialsOfFacesAreSubsetsOfFacesBesideTheirGroups) {
 TEST(UsdaExport, GroupsThatNoPolygonNamesAreSubsetsOfPoints) {
   SurfaceMesh mesh = testing::unit_box();
   mesh.groups = {{"left hand", {0, 5}}};
-  testing::FormatRun run("usda");
-  run.add_body("box", mesh);
-  run.append(1, mesh.positions);
-  const auto stage = testing::read_usda(run.finish());
+  const auto stage = testing::read_usda(usda_of("box", mesh));
   const UsdPrim& group = stage->child("shot/box/left_hand");
   EXPECT_EQ(group.property("elementType").value.text, "point");
   EXPECT_EQ(group.property("indices").value.doubles(), std::vector<double>({0, 5}));
@@ -166,11 +168,7 @@ TEST(UsdaExport, CutsOfTheCameraAreCutsBetweenSamplesToo) {
 TEST(UsdaExport, NamesOfAnyBytesAreUtf8) {
   SurfaceMesh mesh = testing::patchwork();
   mesh.groups.front().name = "caf\xe9";
-  testing::FormatRun run("usda");
-  run.add_body("cloth", mesh);
-  run.target().times = {1, 1, 1};
-  run.append(1, mesh.positions);
-  const std::string text = run.finish();
+  const std::string text = usda_of("cloth", mesh);
   EXPECT_EQ(text.find('\xe9'), std::string::npos);
   EXPECT_NE(text.find("caf\xef\xbf\xbd"), std::string::npos) << "the sign for what cannot be read";
 }
