@@ -18,7 +18,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same surface would give other tetrahedra or another embedding.
-constexpr const char* kFillVersion = "tetrahedra 12";
+constexpr const char* kFillVersion = "tetrahedra 13";
 
 std::vector<std::uint8_t> pack(const FilledBody& filled) {
   ByteWriter out;

@@ -1,11 +1,14 @@
 #include "core/tetmesh/filling/graded_solid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "core/tetmesh/filling/mesh_promises.h"
 #include "core/tetmesh/filling/waiting_log.h"
 #include "core/tetmesh/graded/gap_refinement.h"
 #include "core/tetmesh/quality/tet_quality.h"
@@ -30,8 +33,15 @@ struct Try {
   GradedFilling filling;
   WaitingLog lines;   ///< about it
   Index loose = 0;    ///< pieces beside the main one of each solid
+  Index tunnels = 0;  ///< that the solid does not have; looked for where a count is wanted
   double missed = 0;  ///< of an error that is not kept: width of the widest gap, m; not of fins and rims, which are
                       ///< open, and which no size brings nearer
+
+  double count() const { return static_cast<double>(filling.stuffed.mesh.tets.size()); }
+  double miss_of(double wanted) const { return std::abs(count() / wanted - 1); }
+  bool is_more_whole_than(const Try& other) const {
+    return std::tie(loose, tunnels) < std::tie(other.loose, other.tunnels);
+  }
 };
 
 /// Pieces are told apart only where there are several; then params get to know what they may be.
@@ -54,13 +64,41 @@ Try try_filling(const Solid& solid, ErrorBudgetParams& params, const std::string
     filling.is_kept = filling.is_kept && filling.stuffed.mesh.tets.size() == filled;
     return left;
   });
-  if (pieces > 1 && params.base_edge == 0) made.loose = count_loose(solid, filling, params);
+  if (pieces > 1) made.loose = count_loose(solid, filling, params);
   if (params.error > 0 && filling.widest_gap && !solid.has_open_parts()) made.missed = width_of(*filling.widest_gap);
   return made;
 }
 
+/// Edges of one length at the surface that take about so many tetrahedra: of a thick body the inside, which is coarse,
+/// takes few.
+double even_edge_for(const Solid& solid, double tets) {
+  constexpr double kTetsPerCell = 12, kTetsPerSquare = 1.6, kMostPerSquare = 12;
+  const double area = solid.parts.area(), volume = solid.parts.volume();
+  double edge = std::sqrt(kMostPerSquare * area / tets);
+  while (kTetsPerCell * volume / std::pow(edge, 3) + kTetsPerSquare * area / (edge * edge) < tets) edge *= 0.99;
+  return edge;
+}
+
+/// The count with edges of one length at the surface. Where the widest gaps come first, a wall that is thin all over
+/// keeps edges that are too long for it here and there, and is perforated there.
+Try try_even_filling(const Solid& solid, ErrorBudgetParams params, const std::string& name, const Threads& threads,
+                     const Log& log) {
+  constexpr int kSteps = 5;
+  constexpr double kCountTolerance = 0.05, kMostChange = 2;
+  const double wanted = std::exchange(params.tets, 0);
+  params.base_edge = even_edge_for(solid, wanted);
+  Try best;
+  for (int step = 0; step < kSteps && best.miss_of(wanted) > kCountTolerance; ++step) {
+    Try made = try_filling(solid, params, name, threads, log);
+    params.base_edge *= std::clamp(std::sqrt(made.count() / wanted), 1 / kMostChange, kMostChange);
+    if (made.miss_of(wanted) < best.miss_of(wanted)) best = std::move(made);
+  }
+  if (best.count() > 0) best.tunnels = count_new_tunnels(best.filling.stuffed, solid);
+  return best;
+}
+
 /// What falls apart, or lacks a limb, is filled again with finer edges; of what only lacks one the last filling that
-/// gained by them is kept.
+/// gained by them is kept. A count that is not whole so is tried with even edges.
 GradedFilling fill_whole(const Solid& solid, ErrorBudgetParams params, const std::string& name, const Threads& threads,
                          const Log& log) {
   // Finer edges take more tetrahedra, and a count has no more.
@@ -74,6 +112,12 @@ GradedFilling fill_whole(const Solid& solid, ErrorBudgetParams params, const std
     Try next = try_filling(solid, params, name, threads, log);
     if (was_whole && (next.loose > 0 || !(next.missed < kMuchNearer * best.missed))) break;
     best = std::move(next);
+  }
+  if (params.tets > 0 && best.count() > 0) best.tunnels = count_new_tunnels(best.filling.stuffed, solid);
+  if (params.tets > 0 && best.loose + best.tunnels > 0) {
+    constexpr double kMostOff = 0.25;  // far more than asked is no answer
+    Try even = try_even_filling(solid, params, name, threads, log);
+    if (even.miss_of(params.tets) < kMostOff && even.is_more_whole_than(best)) best = std::move(even);
   }
   best.lines.pass_on(log);
   return std::move(best.filling);

@@ -101,10 +101,10 @@ Index count_new_tunnels(const StuffedMesh& stuffed, const Solid& solid) {
   if (solid.parts.parts.size() != 1) return 0;
   std::vector<Triangle> faces;
   for (const BoundaryFace& face : find_surface_faces(stuffed)) faces.push_back(face.nodes);
-  const std::optional<Index> made = count_tunnels(faces);
-  if (made.value_or(0) == 0) return 0;
+  const Index made = count_manifold_tunnels(faces);
+  if (made == 0) return 0;
   const std::optional<Index> given = count_tunnels(welded_triangles(solid.surface));
-  return given ? std::max(*made - *given, 0) : 0;
+  return given ? std::max(made - *given, 0) : 0;
 }
 
 void warn_of_tunnels(const StuffedMesh& stuffed, const Solid& solid, const std::string& name, const Log& log) {

@@ -39,7 +39,7 @@ void require_whole(const TetMesh& mesh, const SurfaceMesh& solid, double edge, c
 
 /// Tunnels of a solid's boundary that its surface does not have: a thin wall is perforated, or limbs grew together. 0
 /// where that is not known, as the surface is open, or of several parts, which together may have tunnels that none of
-/// them has.
+/// them has. The boundary must be a manifold.
 Index count_new_tunnels(const StuffedMesh& stuffed, const Solid& solid);
 /// Warns of them.
 void warn_of_tunnels(const StuffedMesh& stuffed, const Solid& solid, const std::string& name, const Log& log);

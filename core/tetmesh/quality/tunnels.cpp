@@ -1,5 +1,6 @@
 #include "core/tetmesh/quality/tunnels.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "core/mesh/disjoint_sets.h"
@@ -33,6 +34,26 @@ std::optional<Index> count_tunnels(std::span<const Triangle> triangles) {
       vertices += corners.root(corner) == corner ? 1 : 0;
   }
   return static_cast<Index>(count - (vertices - edges + faces) / 2);
+}
+
+Index count_manifold_tunnels(std::span<const Triangle> triangles) {
+  Index last = -1;
+  for (const auto& [a, b, c] : triangles) last = std::max({last, a, b, c});
+  DisjointSets pieces(at(last + 1));
+  std::vector<bool> is_used(at(last + 1), false);
+  for (const auto& [a, b, c] : triangles) {
+    pieces.join(a, b);
+    pieces.join(a, c);
+    is_used[at(a)] = is_used[at(b)] = is_used[at(c)] = true;
+  }
+  std::int64_t vertices = 0, count = 0;
+  for (Index i = 0; i <= last; ++i) {
+    if (!is_used[at(i)]) continue;
+    ++vertices;
+    count += pieces.root(i) == i ? 1 : 0;
+  }
+  const auto faces = static_cast<std::int64_t>(triangles.size());  // three edges each, shared by two
+  return static_cast<Index>(count - (vertices - faces / 2) / 2);
 }
 
 }  // namespace softreel

@@ -14,4 +14,7 @@ namespace softreel {
 /// count as not there.
 std::optional<Index> count_tunnels(std::span<const Triangle> triangles);
 
+/// The same of a closed manifold (each edge has two triangles, each vertex one fan), without a sort.
+Index count_manifold_tunnels(std::span<const Triangle> triangles);
+
 }  // namespace softreel
