@@ -82,6 +82,12 @@ inline void append(SurfaceMesh& mesh, const SurfaceMesh& other) {
   for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
 }
 
+inline SurfaceMesh joined(const std::vector<SurfaceMesh>& parts) {
+  SurfaceMesh all;
+  for (const SurfaceMesh& part : parts) append(all, part);
+  return all;
+}
+
 inline void turn_inside_out(SurfaceMesh& mesh) {
   for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }

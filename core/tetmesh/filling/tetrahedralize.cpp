@@ -13,6 +13,7 @@
 #include "core/tetmesh/filling/mesh_promises.h"
 #include "core/tetmesh/filling/solids.h"
 #include "core/tetmesh/filling/surface_preparation.h"
+#include "core/tetmesh/filling/touching_solids.h"
 #include "core/tetmesh/filling/waiting_log.h"
 #include "core/tetmesh/graded/graded_stuffing.h"
 #include "core/tetmesh/improvement/angle_improvement.h"
@@ -300,7 +301,8 @@ void require_params(const TetrahedralizeParams& params, const std::string& name)
                     name, params.error));
 }
 
-/// Solids with a volume; of the others, parts by parts, is said that nothing can be filled there.
+/// Solids with a volume; of the others, parts by parts, is said that nothing can be filled there, and of those that
+/// touch that they are apart.
 std::vector<Solid> take_solids(const PreparedSurface& prepared, const std::string& name, const Log& log) {
   std::vector<Solid> solids =
       split_solids(prepared.surface, prepared.parts, find_solids(prepared.surface, prepared.parts));
@@ -311,6 +313,7 @@ std::vector<Solid> take_solids(const PreparedSurface& prepared, const std::strin
       if (flat) log.warn(fmt::format("body '{}': {} encloses no volume and has no tetrahedra", name, part.place()));
     return flat;
   });
+  warn_of_touching(solids, name, log);
   return solids;
 }
 
@@ -363,7 +366,12 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const TetrahedralizeParams& p
   require_params(params, name);
   const bool embedded = params.mode == TetMode::Embedded;
   PreparedSurface prepared = prepare_surface(surface, {params.thickness, embedded}, name, log);
-  const std::vector<Solid> solids = embedded ? std::vector<Solid>{} : take_solids(prepared, name, log);
+  std::vector<Solid> solids;
+  if (!embedded)
+    solids = take_solids(prepared, name, log);
+  else if (prepared.parts.parts.size() > 1)  // covered in one go, and as much apart
+    warn_of_touching(split_solids(prepared.surface, prepared.parts, find_solids(prepared.surface, prepared.parts)),
+                     name, log);
   if (!embedded && solids.empty())
     throw input_error(fmt::format(
         "body '{}': all of its surface is flat, and encloses no volume. Accepted: a surface that encloses a volume. "

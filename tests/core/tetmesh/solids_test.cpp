@@ -9,19 +9,13 @@
 namespace softreel {
 namespace {
 
-using test::append;
+using test::joined;
 using test::make_box;
 using test::make_sphere;
 
 SurfaceMesh inside_out(SurfaceMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
-}
-
-SurfaceMesh joined(const std::vector<SurfaceMesh>& parts) {
-  SurfaceMesh all;
-  for (const SurfaceMesh& part : parts) append(all, part);
-  return all;
 }
 
 std::vector<Index> solids_of(const std::vector<SurfaceMesh>& parts) {
