@@ -44,7 +44,7 @@ StaticState StaticSolver::moved(const StaticState& state, std::span<const Vec3> 
 /// failure doubles the iterations until the next try. In statics, which may have far to go, only where parts are so
 /// much stiffer than others that they hardly do anything but turn.
 bool StaticSolver::search_ahead(StaticState& state, double tolerance, std::span<const Vec3> direction) {
-  if (!(potential_ != nullptr || has_rigid_parts_) || unstable_ || !has_energy(parts_.params.rotation)) return false;
+  if (!(potential_ != nullptr || has_rigid_parts()) || unstable_ || !has_energy(parts_.params.rotation)) return false;
   if (iterations_ < next_ahead_) return false;
   const double slope = dot(direction, state.forces);
   StaticState next = moved(state, direction, 1);

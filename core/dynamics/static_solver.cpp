@@ -20,6 +20,8 @@ constexpr int kGmresIterations = 30;      ///< where the tangent is not symmetri
 constexpr double kInnerTolerance = 0.03;  ///< of the solves that precondition them
 constexpr double kDifferenceStep = 1e-7;  ///< of positions, over the size of a tetrahedron: between bend and round-off
 constexpr double kWorstLinearTolerance = 1e-3;
+/// A cycle that takes more iterations is made anew each time; another costs about as much as four of them.
+constexpr int kMostOfLagging = 8;
 constexpr double kBestLinearTolerance = 1e-10;
 /// Stiffness against rigid motion of pieces without a pin, relative to the mean stiffness of a node: far below the
 /// softest deformation of any mesh that fits in memory, far above round-off.
@@ -35,11 +37,18 @@ constexpr int kStalls = 2;
 /// Stiffness over the softest of the body from which on a part is as good as rigid: at 1e5 a hanging bar half of which
 /// was so stiff took 57 iterations and at 1e6 125 that searched along the line only; with full steps ahead 6 and 9.
 constexpr double kRigidContrast = 1e5;
+/// Up to which the cycle of one state of a step serves the next: where stiff parts turn in soft ones, it does not (the
+/// preset soft_knees took up to 775 iterations a frame instead of 230).
+constexpr double kLaggingContrast = 10;
 
-bool has_rigid_parts(std::span<const ElasticLaw> laws) {
-  const auto softer = [](const ElasticLaw& a, const ElasticLaw& b) { return p_wave_modulus(a) < p_wave_modulus(b); };
-  const auto [softest, stiffest] = std::minmax_element(laws.begin(), laws.end(), softer);
-  return softest != laws.end() && p_wave_modulus(*stiffest) >= kRigidContrast * p_wave_modulus(*softest);
+/// The stiffest of a body's materials over the softest.
+double stiffness_contrast(std::span<const ElasticLaw> laws) {
+  double softest = std::numeric_limits<double>::infinity(), stiffest = 0;
+  for (const ElasticLaw& law : laws) {
+    softest = std::min(softest, p_wave_modulus(law));
+    stiffest = std::max(stiffest, p_wave_modulus(law));
+  }
+  return stiffest / softest;
 }
 
 /// True if no position would change by more than its rounding.
@@ -101,7 +110,7 @@ StaticSolver::StaticSolver(Simulator::Parts& parts, std::span<const std::uint8_t
       potential_(potential),
       shares_(parts.body.tets.size(), 1.0),
       node_terms_(potential != nullptr ? potential->weights : rigid_shifts(parts, held)),
-      has_rigid_parts_(has_rigid_parts(parts.body.laws)) {
+      stiffness_contrast_(stiffness_contrast(parts.body.laws)) {
   parts_.stresses.resize(parts.body.tets.size());
   if (is_damped())
     for (std::size_t e = 0; e < shares_.size(); ++e) shares_[e] += potential->damping.ratios[e];
@@ -157,6 +166,10 @@ void StaticSolver::assemble(const StaticState& state, Curvature curvature) {
   for (std::size_t k = 0; k < frozen.size(); ++k) parts_.matrix.values[k] += frozen[k];
 }
 
+bool StaticSolver::has_rigid_parts() const {
+  return stiffness_contrast_ >= kRigidContrast;
+}
+
 bool StaticSolver::is_damped() const {
   return potential_ != nullptr && !potential_->damping.empty();
 }
@@ -202,9 +215,15 @@ SolveReport StaticSolver::solve_linear(const StaticState& state, std::span<const
 
 void StaticSolver::precondition(const StaticState& state) {
   assemble(state, Curvature::PositivePart);
+  make_cycle();
+}
+
+/// Of the matrix that was assembled last, which must be definite.
+void StaticSolver::make_cycle() {
   eliminate_held(parts_.matrix, held_, parts_.threads);
   const ScopedStage stage(parts_.times, "simulate/update");
   parts_.multigrid.update(parts_.matrix, held_);
+  has_cycle_ = true;
 }
 
 bool StaticSolver::solve_direction(const StaticState& state, double tolerance, int max_iterations,
@@ -277,11 +296,16 @@ bool StaticSolver::find_direction_without_energy(const StaticState& state, std::
 /// which also makes the cycle: it is near the tangent and always definite.
 bool StaticSolver::find_direction(const StaticState& state, double tolerance, std::vector<Vec3>& direction) {
   if (!has_energy(parts_.params.rotation)) return find_direction_without_energy(state, direction);
-  precondition(state);
+  // Within a step of time a body does not go far, so that the cycle of a state before this one may do.
+  const bool lags = has_cycle_ && potential_ != nullptr && stiffness_contrast_ <= kLaggingContrast;
+  if (!lags) precondition(state);
   assemble(state, Curvature::Signed);
   eliminate_held(parts_.matrix, held_, parts_.threads);
-  const int all = parts_.params.max_iterations;
-  unstable_ = !solve_direction(state, tolerance, std::min(all, kIndefiniteIterations), direction);
+  const int before = linear_iterations_;
+  unstable_ =
+      !solve_direction(state, tolerance, std::min(parts_.params.max_iterations, kIndefiniteIterations), direction);
+  has_cycle_ = !unstable_ && linear_iterations_ - before <= kMostOfLagging;
+  if (unstable_ && lags) return find_direction(state, tolerance, direction);
   return !unstable_ || find_stable_direction(state, tolerance, direction);
 }
 
@@ -308,11 +332,11 @@ bool StaticSolver::move_held(StaticState& state, std::span<const Vec3> targets) 
   }
   assemble(state, Curvature::PositivePart);
   multiply(parts_.matrix, moves, right_side, parts_.threads);
+  make_cycle();
   for (std::size_t i = 0; i < n; ++i) {
     right_side[i] = state.forces[i] - right_side[i];
     if (held_[i] != 0) right_side[i].setZero();
   }
-  precondition(state);
   ++iterations_;
   if (solve_linear(state, right_side, kWorstLinearTolerance, parts_.params.max_iterations, change).status ==
       SolveStatus::Breakdown)

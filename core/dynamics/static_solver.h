@@ -63,11 +63,13 @@ class StaticSolver {
 
  private:
   bool is_damped() const;
+  bool has_rigid_parts() const;  ///< beside the softest, the stiffest material hardly deforms
   void assemble(const StaticState& state, Curvature curvature);
   void adjust_terms_to_damping(const StaticState& state, Curvature curvature);
   SolveReport solve_linear(const StaticState& state, std::span<const Vec3> right_side, double tolerance,
                            int max_iterations, std::span<Vec3> change);
   void precondition(const StaticState& state);
+  void make_cycle();
   bool solve_direction(const StaticState& state, double tolerance, int max_iterations, std::vector<Vec3>& direction);
   std::vector<Vec3> forces_at(std::vector<Vec3> positions, std::vector<Quaternion> rotations);
   bool find_direction_without_energy(const StaticState& state, std::vector<Vec3>& direction);
@@ -90,11 +92,12 @@ class StaticSolver {
   std::vector<double> shares_;      ///< per element: 1 and b / r of damping
   std::vector<double> node_terms_;  ///< inertia; in statics, what holds the rigid motions of pieces without a pin
   std::vector<Vec3> step_forces_;   ///< of the potential at the state that was last evaluated, N
-  bool has_rigid_parts_;            ///< beside the softest, the stiffest material hardly deforms
+  double stiffness_contrast_;       ///< of the stiffest material to the softest
   bool unstable_ = false;           ///< the exact tangent gave no direction of descent at the present state
   int iterations_ = 0;
   int ahead_pause_ = 1, next_ahead_ = 0;  ///< iterations to leave out after a failure of search_ahead; its next try
   int linear_iterations_ = 0;
+  bool has_cycle_ = false;  ///< one that solves took few iterations with
 };
 
 }  // namespace softreel

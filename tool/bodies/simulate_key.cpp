@@ -8,7 +8,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give other frames.
-constexpr const char* kSimulationVersion = "simulation 29";
+constexpr const char* kSimulationVersion = "simulation 30";
 
 void add(KeyHasher& key, const Transform& t) {
   key.add(t.translate).add(t.rotate).add(t.scale);
