@@ -38,7 +38,7 @@ float nearest_of_ground(const MotionMesh& ground, const CameraFrame& camera) {
 }  // namespace
 
 DepthRange depth_range(const std::vector<MotionMesh>& meshes, const MotionMesh& ground, const GizmoMarks& marks,
-                       const CameraFrame& camera) {
+                       const std::vector<LampCorner>& lamps, const CameraFrame& camera) {
   float near = std::numeric_limits<float>::infinity(), far = 1;
   const auto depth_of = [&](const Vec3f& p) { return (p - camera.position).dot(camera.forward); };
   const auto add = [&](const Vec3f& p) {
@@ -50,6 +50,7 @@ DepthRange depth_range(const std::vector<MotionMesh>& meshes, const MotionMesh& 
     for (const Vec3f& p : mesh.times.back().positions) add(p);
   if (!ground.times.empty())
     for (const Vec3f& p : ground.times.back().positions) far = std::max(far, depth_of(p));
+  for (const LampCorner& corner : lamps) add(corner.position);
   for (const GizmoMarks::Dot& dot : marks.dots) add(dot.at);
   for (const GizmoMarks::Line& line : marks.lines) {
     add(line.from);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/preview/gizmo_marks.h"
+#include "render/preview/lamp_shapes.h"
 #include "render/scene/camera_frame.h"
 #include "render/scene/scene.h"
 
@@ -15,8 +16,8 @@ struct DepthRange {
 };
 
 /// With a little air. A body may be close beside a ground that goes on for kilometres; what is nearer than 1e-5 of
-/// `far` is left out. ground: a ground_mesh of any number of cells, or empty.
+/// `far` is left out. ground: a ground_mesh of any number of cells, or empty; lamps: corners of what is drawn of them.
 DepthRange depth_range(const std::vector<MotionMesh>& meshes, const MotionMesh& ground, const GizmoMarks& marks,
-                       const CameraFrame& camera);
+                       const std::vector<LampCorner>& lamps, const CameraFrame& camera);
 
 }  // namespace softreel

@@ -17,6 +17,19 @@ struct GroundShape {
   float top = 0;          ///< m, height at which the wall ends
 };
 
+/// Whether a point is on the side of a ground from which it is seen: above the floor, and before bend and wall. No line
+/// between two such points meets the ground. profile: m, along and up.
+inline bool is_hollow_at(const GroundShape& shape, const Vec2f& profile) {
+  if (profile.y() <= shape.height) return false;
+  if (!shape.has_wall || profile.x() <= shape.floor_end) return true;
+  if (profile.x() >= shape.floor_end + shape.radius) return false;
+  const Vec2f from_center = profile - Vec2f(shape.floor_end, shape.height + shape.radius);
+  return from_center.y() >= 0 || from_center.squaredNorm() < shape.radius * shape.radius;
+}
+inline bool is_hollow_at(const GroundShape& shape, const Vec3f& point) {
+  return is_hollow_at(shape, Vec2f(point.dot(shape.along), point.y()));
+}
+
 /// Throws input_error for a size or sweep that leaves no ground.
 GroundShape ground_shape(const Ground& ground, const Camera& camera);
 

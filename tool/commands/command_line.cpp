@@ -84,7 +84,7 @@ void add_preview_command(CLI::App& app, Parsed& parsed, Runner& run) {
                    "with lines to their targets), regions (green); all; none [pins,pulls]")
       ->option_text("LIST")
       ->delimiter(',')
-      ->expected(1)
+      ->take_all()
       ->check(CLI::IsMember({"pins", "pulls", "regions", "all", "none"}))
       ->group("Picture");
   preview

@@ -124,7 +124,7 @@ class Playblast {
   }
   StageKey file_key(int frame) const {
     const OutputSettings& output = run_.shot().output;
-    KeyHasher key("preview 9");
+    KeyHasher key("preview 10");
     key.add(scenes_.preview_key(frame)).add(output.view).add(output.exposure).add(fast_).add(wireframe_);
     if (output.view == ViewTransform::Raw) key.add("linear");
     gizmos_.add_key(key, frame);

@@ -17,13 +17,6 @@ inline SweptGround::Line SweptGround::line_of(const Ray& ray) const {
           ray.direction.dot(shape_.across)};
 }
 
-inline bool SweptGround::is_hollow_at(const Vec2f& point) const {
-  if (point.y() <= shape_.height) return false;
-  if (!shape_.has_wall || point.x() <= center_.x()) return true;
-  if (point.x() >= back_) return false;
-  return point.y() >= center_.y() || (point - center_).squaredNorm() < shape_.radius * shape_.radius;
-}
-
 /// Whether the ground is as wide as where the line is then.
 bool SweptGround::reaches(const Line& line, float distance) const {
   return std::abs(line.across + distance * line.across_direction) <= shape_.half_width;
@@ -96,7 +89,7 @@ inline SweptGround::Crossing SweptGround::leaving_crossing(const Line& line, flo
 
 /// part: kNothing if it meets none of them.
 inline SweptGround::Crossing SweptGround::nearest_crossing(const Line& line, float max_distance) const {
-  if (is_hollow_at(line.origin)) return leaving_crossing(line, max_distance);
+  if (is_hollow_at(shape_, line.origin)) return leaving_crossing(line, max_distance);
   Crossing nearest{max_distance, kNothing};
   cross_floor(line, nearest);
   if (!shape_.has_wall) return nearest;
@@ -107,8 +100,8 @@ inline SweptGround::Crossing SweptGround::nearest_crossing(const Line& line, flo
 
 bool SweptGround::blocks(const Ray& ray) const {
   const Line line = line_of(ray);
-  if (std::isfinite(ray.max_distance) && is_hollow_at(line.origin) &&
-      is_hollow_at(line.origin + ray.max_distance * line.direction))
+  if (std::isfinite(ray.max_distance) && is_hollow_at(shape_, line.origin) &&
+      is_hollow_at(shape_, Vec2f(line.origin + ray.max_distance * line.direction)))
     return false;
   return nearest_crossing(line, ray.max_distance).part != kNothing;
 }
@@ -131,7 +124,7 @@ FloorSide SweptGround::side_of_floor(const Vec3f& position) const {
   if (along < -shape_.half_width || std::abs(position.dot(shape_.across)) > shape_.half_width) return FloorSide::Beyond;
   if (along > shape_.floor_end) {
     if (!shape_.has_wall) return FloorSide::Beyond;
-    return is_hollow_at(in_profile(position)) ? FloorSide::Above : FloorSide::Below;
+    return is_hollow_at(shape_, position) ? FloorSide::Above : FloorSide::Below;
   }
   const float height = position.y() - shape_.height;
   if (std::abs(height) < kNear * start_offset(position, 0)) return FloorSide::Near;

@@ -54,7 +54,6 @@ class SweptGround {
 
   Line line_of(const Ray& ray) const;
   Vec2f in_profile(const Vec3f& point) const { return {point.dot(shape_.along), point.y()}; }
-  bool is_hollow_at(const Vec2f& point) const;
   bool reaches(const Line& line, float distance) const;
   Crossing nearest_crossing(const Line& line, float max_distance) const;
   Crossing leaving_crossing(const Line& line, float max_distance) const;

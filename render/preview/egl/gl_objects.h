@@ -58,6 +58,7 @@ class Canvas {
  public:
   /// samples: a pixel; 0 for one without anti-aliasing, which has no other part.
   Canvas(int width, int height, int samples) : width_(width), height_(height), samples_(samples) {
+    require_size(width, height);
     glGenFramebuffers(2, framebuffers_);
     glGenRenderbuffers(4, buffers_);
     attach(framebuffers_[0], buffers_[0], buffers_[1], samples);
@@ -94,6 +95,16 @@ class Canvas {
   }
 
  private:
+  static void require_size(int width, int height) {
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
+    if (width <= most && height <= most) return;
+    throw work_error(
+        fmt::format("The preview cannot draw {} x {} pixels here.\n"
+                    "  Accepted: at most {} to a side with this OpenGL. Set render.scale or render.crop, or render "
+                    "with the path tracer instead.",
+                    width, height, most));
+  }
   void bind(GLuint framebuffer) const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, width_, height_);

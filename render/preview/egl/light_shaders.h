@@ -8,10 +8,10 @@ namespace softreel {
 inline constexpr const char* kSurfaceFunctions = R"(
 uniform vec3 eye;
 uniform vec3 emission;
-uniform float roughness, metallic, specular;
+uniform float roughness, metallic, specular, grazing;  // grazing: what a smooth one reflects along the surface
 uniform bool flat_normals;
 uniform bool upright_ground;          // the pattern follows world axes
-uniform float checker, ground_height, sweep, fade_start, fade_end;
+uniform float checker, ground_height, sweep, ground_edge;  // ground_edge: m, half the square; of a backdrop none
 uniform vec3 checker_color, across, along;
 uniform vec3 lamp_center[LAMPS], lamp_normal[LAMPS], lamp_radiance[LAMPS];
 uniform float lamp_area[LAMPS];
@@ -63,7 +63,7 @@ float rest_of(float cosine) {
 }
 
 vec3 reflectance(vec3 f0, float cosine, float rough) {
-  return f0 + (max(vec3(1.0 - rough), f0) - f0) * rest_of(cosine);
+  return f0 + (max(vec3(grazing * (1.0 - rough)), f0) - f0) * rest_of(cosine);
 }
 
 // GGX highlight times pi, with the visibility of Karis 2013.
@@ -101,6 +101,35 @@ float reached(int layer, vec3 n) {
 #endif
 }
 
+#if GROUND_HIDES
+uniform vec3 hide_across, hide_along;  // horizontal, unit
+uniform float hide_height, hide_half, hide_floor_end, hide_radius, hide_top;  // GroundShape; hide_radius 0: no wall
+
+// 0 where the ground lies between the point and what is up to `most` times `to` away, else 1; as
+// render/pathtrace/rays/swept_ground.h.
+float ground_open(vec3 to, float most) {
+  float least = 1e-4 * distance(eye, world_position) / length(to), x = dot(world_position, hide_across),
+        dx = dot(to, hide_across);
+  vec2 o = vec2(dot(world_position, hide_along), world_position.y), d = vec2(dot(to, hide_along), to.y);
+  float at = (hide_height - o.y) / d.y, y = o.x + at * d.x;
+  if (d.y != 0.0 && at > least && at < most && abs(x + at * dx) <= hide_half && y >= -hide_half && y <= hide_floor_end)
+    return 0.0;
+  if (hide_radius <= 0.0) return 1.0;
+  vec2 center = vec2(hide_floor_end, hide_height + hide_radius), from = o - center;
+  at = (hide_radius - from.x) / d.x;
+  y = o.y + at * d.y;
+  if (d.x != 0.0 && at > least && at < most && abs(x + at * dx) <= hide_half && y >= center.y && y <= hide_top)
+    return 0.0;
+  float a = dot(d, d), b = dot(from, d), under = b * b - a * (dot(from, from) - hide_radius * hide_radius);
+  for (float side = -1.0; under > 0.0 && side < 2.0; side += 2.0) {
+    at = (side * sqrt(under) - b) / a;
+    vec2 p = from + at * d;
+    if (at > least && at < most && abs(x + at * dx) <= hide_half && p.x >= 0.0 && p.y <= 0.0) return 0.0;
+  }
+  return 1.0;
+}
+#endif
+
 struct Skin {
   vec3 n, v, f0;
   float rough, alpha;
@@ -134,7 +163,8 @@ vec3 lit_by(vec3 light, vec3 l, int shadow, Skin s, float widened, float narrow)
   return arrived * reflectance(s.f0, vh, s.rough) * (narrow * highlight(s.n, s.v, l, widened));
 }
 
-vec3 from_lamp(int k, int shadow, Skin s) {
+// open: share that the ground lets pass
+vec3 from_lamp(int k, int shadow, float open, Skin s) {
   vec3 to = lamp_center[k] - world_position;
   float squared = dot(to, to);
   vec3 l = to * inversesqrt(squared);
@@ -143,11 +173,11 @@ vec3 from_lamp(int k, int shadow, Skin s) {
   vec3 irradiance = lamp_radiance[k] * (lamp_area[k] * facing / (squared + 0.25 * lamp_area[k]));
   float widened = min(1.0, s.alpha + 0.25 * sqrt(lamp_area[k] / squared));
   float narrow = (s.alpha * s.alpha) / (widened * widened);  // the same energy over a wider highlight
-  return lit_by(irradiance / kPi, l, shadow, s, widened, mix(narrow, 1.0, 0.5));
+  return lit_by(open * irradiance / kPi, l, shadow, s, widened, mix(narrow, 1.0, 0.5));
 }
 
-vec3 from_sun(int k, int shadow, Skin s) {
-  return lit_by(sun_irradiance[k] / kPi, sun_towards[k], shadow, s, s.alpha, 1.0);
+vec3 from_sun(int k, int shadow, float open, Skin s) {
+  return lit_by(open * sun_irradiance[k] / kPi, sun_towards[k], shadow, s, s.alpha, 1.0);
 }
 
 #if (NORMAL_MAP || BUMP_MAP) && !AT_VERTICES
@@ -184,14 +214,19 @@ vec3 bent(vec3 n) {
 void light_surface(vec3 albedo) {
   vec3 v = normalize(eye - world_position);
   vec3 n = normalize(flat_normals ? FACE_NORMAL : world_normal);
-  // The back of a sheet; or a front whose smooth normal points a little away, as near outlines.
-  float side = dot(n, v);
-#if (NORMAL_MAP || BUMP_MAP) && !AT_VERTICES
-  n = side < -0.3 ? -bent(n) : bent(n);
-  n = normalize(n - min(dot(n, v), 0.0) * v);
+  // The back of a sheet; or a front whose smooth normal points away, as near outlines and hard edges. The face tells
+  // them apart where it is known.
+#if AT_VERTICES
+  float side = dot(n, v) < -0.3 ? -1.0 : 1.0;
 #else
-  n = side < -0.3 ? -n : normalize(n - min(side, 0.0) * v);
+  vec3 face = FACE_NORMAL;
+  float side = dot(face, v) * dot(face, n) < 0.0 ? -1.0 : 1.0;
 #endif
+#if (NORMAL_MAP || BUMP_MAP) && !AT_VERTICES
+  n = bent(n);
+#endif
+  n *= side;
+  n = normalize(n - min(dot(n, v), 0.0) * v);
   float rough = roughness;
 #if ROUGHNESS_MAP && !AT_VERTICES
   rough = mix(rough, texture(roughness_map, place.xy).r, place.z);
@@ -235,13 +270,21 @@ void light_surface(vec3 albedo) {
   surface_normal = n;
 }
 
+#if GROUND
+// Share of a pixel on the square, where its edge is narrower than one.
+float on_ground() {
+  float inside = ground_edge - max(abs(world_position.x), abs(world_position.z));
+  return clamp(inside / max(fwidth(inside), 1e-20), 0.0, 1.0);
+}
+#endif
+
 vec3 seen_radiance(vec3 albedo) {
   vec3 sum = albedo * lit_diffuse + lit_other;
 #if RICH && !GLASS
   sum += through * seen_sky(mix(-view, reflect(-view, surface_normal), 0.3));
 #endif
 #if GROUND
-  sum = mix(sum, seen_sky(-view), smoothstep(fade_start, fade_end, length(world_position.xz)));
+  sum = mix(seen_sky(-view), sum, on_ground());
 #endif
   return sum;
 }
@@ -267,7 +310,7 @@ float caught_shadow() {
   const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
   float open = dot(luminance, unshadowed);
   float shade = open > 0.0 ? 1.0 - dot(luminance, lit_diffuse) / open : 0.0;
-  return shade * (1.0 - smoothstep(fade_start, fade_end, length(world_position.xz)));
+  return shade * on_ground();
 }
 #endif
 )";

@@ -18,6 +18,7 @@
 #include "render/preview/egl/gpu_textures.h"
 #include "render/preview/egl/preview_shaders.h"
 #include "render/preview/egl/surface_programs.h"
+#include "render/preview/lamp_shapes.h"
 #include "render/preview/picture_regions.h"
 #include "render/preview/preview.h"
 #include "render/preview/shadow_views.h"
@@ -43,20 +44,23 @@ Eigen::Matrix4f clip_from_world(const CameraFrame& camera, float near, float far
   return clip * shift;
 }
 
-/// Root of the mean area of a mesh's triangles as pixels at its mean distance, face on.
+/// Root of the area of the triangle that a point of a mesh lies in, on average, as pixels at its mean distance, face
+/// on: a few large triangles count however many small ones there are.
 float triangle_size(const MotionMesh& mesh, const CameraFrame& camera, int width) {
   const std::vector<Vec3f>& positions = mesh.times.back().positions;
-  double area = 0, depth = 0;
+  double area = 0, squared = 0, depth = 0;
   for (const Triangle& t : mesh.triangles) {
     const Vec3f &a = positions[static_cast<std::size_t>(t[0])], &b = positions[static_cast<std::size_t>(t[1])],
                 &c = positions[static_cast<std::size_t>(t[2])];
-    area += 0.5 * static_cast<double>((b - a).cross(c - a).norm());
+    const double own = 0.5 * static_cast<double>((b - a).cross(c - a).norm());
+    area += own;
+    squared += own * own;
     depth += static_cast<double>((a - camera.position).dot(camera.forward));
   }
-  const double count = std::max<double>(1, static_cast<double>(mesh.triangles.size()));
   if (!(depth > 0)) return std::numeric_limits<float>::infinity();  // around the camera
-  const double pixels_per_meter = 0.5 * width / (static_cast<double>(camera.half_width) * depth / count);
-  return static_cast<float>(std::sqrt(area / count) * pixels_per_meter);
+  const double mean_depth = depth / static_cast<double>(mesh.triangles.size());
+  const double pixels_per_meter = 0.5 * width / (static_cast<double>(camera.half_width) * mean_depth);
+  return area > 0 ? static_cast<float>(std::sqrt(squared / area) * pixels_per_meter) : 0.0f;
 }
 
 /// Far bodies first: what is nearer is seen through over them. Distances are those of the middles of boxes.
@@ -88,18 +92,25 @@ struct Surroundings {
   const SurfaceView& view;
   const MotionMesh& ground;  ///< empty if there is none
   PixelRect shadowed;        ///< where shadows may fall on it
+  const std::vector<OverlayVertex>& lamps;
 };
 
-/// The part of a picture that has edges: bodies and marks, or all of it where the end of a backdrop is seen. A plane
-/// fades before it ends.
-PixelRect fine_region(const Scene& scene, const MotionMesh& ground, const std::vector<OverlayVertex>& marks,
+/// What is drawn over bodies and ground, as triangles.
+struct Overlays {
+  std::vector<OverlayVertex> lamps, marks;
+};
+
+/// The part of a picture that has edges: bodies, lamps and marks, or all of it where the end of a backdrop is seen.
+/// That of a plane is smooth by itself.
+PixelRect fine_region(const Scene& scene, const MotionMesh& ground, const Overlays& overlays,
                       const Eigen::Matrix4f& clip_from_world, const PixelRect& whole) {
   constexpr int kMargin = 2;  // pixels
   const bool ends = scene.ground && scene.ground->style == GroundStyle::Sweep;
   if (ends && may_see_rim(ground, clip_from_world)) return whole;
   SeenRegion region(whole.width(), whole.height());
   add_bodies(region, scene.meshes, clip_from_world);
-  for (const OverlayVertex& vertex : marks) region.add(vertex.clip);
+  add_seen(region, overlays.lamps);
+  for (const OverlayVertex& vertex : overlays.marks) region.add(vertex.clip);
   return region.rect(kMargin);
 }
 
@@ -130,13 +141,14 @@ class EglPreview : public Preview {
                          const PixelRect& part, SurfacePrograms& programs);
   void draw_background(const SurfaceView& view, const CameraFrame& camera);
   void draw_edges(const Eigen::Matrix4f& clip_from_world);
+  void draw_lamps(const SurfaceView& view, const std::vector<OverlayVertex>& triangles);
   void draw_marks(const std::vector<OverlayVertex>& triangles);
   const GlProgram& plain() { return programs_.of(kPlainVertexShader, kPlainFragmentShader); }
 
   EglContext context_;
   GlPrograms programs_;
   std::unique_ptr<ShadowLayers> shadows_;  ///< made when there is a shadow
-  std::unique_ptr<GpuMarks> marks_;        ///< made when there is a mark
+  std::unique_ptr<GpuMarks> marks_;        ///< made when there is a lamp or a mark
   std::unique_ptr<Canvas> canvas_;         ///< of the last picture
   std::deque<GpuMesh> bodies_;             ///< of the last scene
   std::optional<GpuMesh> ground_;
@@ -245,6 +257,24 @@ void EglPreview::draw_edges(const Eigen::Matrix4f& clip_from_world) {
   glDisable(GL_BLEND);
 }
 
+/// Added to what is behind them, from the side to which they shine.
+void EglPreview::draw_lamps(const SurfaceView& view, const std::vector<OverlayVertex>& triangles) {
+  if (triangles.empty()) return;
+  if (!marks_) marks_ = std::make_unique<GpuMarks>();
+  const GlProgram& lamp =
+      programs_.of(kOverlayVertexShader, shader_head(view) + kDisplayFunctions + kLampFragmentShader);
+  lamp.use();
+  lamp.set("exposure_scale", std::exp2(view.exposure));
+  glDepthMask(GL_FALSE);
+  glEnable(GL_CULL_FACE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  marks_->draw(triangles);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+}
+
 /// What is behind bodies faintly, then what is seen in full.
 void EglPreview::draw_marks(const std::vector<OverlayVertex>& triangles) {
   if (triangles.empty()) return;
@@ -264,7 +294,7 @@ void EglPreview::draw_marks(const std::vector<OverlayVertex>& triangles) {
   glDepthMask(GL_TRUE);
 }
 
-/// Ground and background in a part of the picture.
+/// Ground, background and lamps in a part of the picture.
 void EglPreview::draw_surroundings(const Scene& scene, const CameraFrame& camera, const Surroundings& around,
                                    const PixelRect& part, SurfacePrograms& programs) {
   const auto draw_ground = [&](const std::vector<PixelRect>& parts, bool in_shadow) {
@@ -282,6 +312,7 @@ void EglPreview::draw_surroundings(const Scene& scene, const CameraFrame& camera
   }
   draw_only_in(part);
   if (!catches_shadows(scene)) draw_background(around.view, camera);
+  draw_lamps(around.view, around.lamps);
 }
 
 DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTransform view, float exposure,
@@ -290,17 +321,19 @@ DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTra
   const int picture_height = height;
   if (style.window != PixelWindow{}) width = style.window.width(), height = style.window.height();
   const MotionMesh ground = scene.ground ? ground_mesh(*scene.ground, scene.camera, 1) : MotionMesh{};
-  const DepthRange depths = depth_range(scene.meshes, ground, style.marks, camera);
+  const std::vector<LampCorner> lamps = visible_lamps(scene.area_lights);
+  const DepthRange depths = depth_range(scene.meshes, ground, style.marks, lamps, camera);
   const Eigen::Matrix4f clip = clip_from_world(camera, depths.near, depths.far);
   SurfaceView seen{view, exposure, scene.environment, {}, clip, camera.position};
   seen.pixel_angle = 2 * camera.half_width / static_cast<float>(width);
   if (!style.fast) seen.shadows = shadow_views(scene, kMaxPreviewShadows, kShadowSize);
-  const std::vector<OverlayVertex> marks =
-      overlay_triangles(style.marks, clip, camera.position, width, height, picture_height);
+  const Overlays overlays{lamp_triangles(lamps, clip),
+                          overlay_triangles(style.marks, clip, camera.position, width, height, picture_height)};
   const PixelRect whole{0, 0, width, height};
-  const PixelRect fine = style.fast ? whole : fine_region(scene, ground, marks, clip, whole);
+  const PixelRect fine = style.fast ? whole : fine_region(scene, ground, overlays, clip, whole);
   const Surroundings around{seen, ground,
-                            scene.ground ? shadow_region(ground, seen.shadows, clip, width, height) : PixelRect{}};
+                            scene.ground ? shadow_region(ground, seen.shadows, clip, width, height) : PixelRect{},
+                            overlays.lamps};
   const GLbitfield cleared = GL_DEPTH_BUFFER_BIT | (catches_shadows(scene) ? GL_COLOR_BUFFER_BIT : 0);
   const int samples = style.fast ? 0 : kAntiAliasing;
 
@@ -327,7 +360,7 @@ DisplayImage EglPreview::draw(const Scene& scene, int width, int height, ViewTra
   draw_glass(scene, camera, width, programs, seen);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   if (style.wireframe) draw_edges(clip);
-  draw_marks(marks);
+  draw_marks(overlays.marks);
   glDisable(GL_SCISSOR_TEST);
   DisplayImage image = canvas_->read(catches_shadows(scene), fine);
   if (const GLenum failure = glGetError(); failure != GL_NO_ERROR)

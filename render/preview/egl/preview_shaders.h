@@ -132,6 +132,13 @@ void main() {
 }
 )";
 
+/// Visible lamps: the tone is their radiance.
+inline constexpr const char* kLampFragmentShader = R"(
+in vec3 shade;
+out vec4 color;
+void main() { color = vec4(display(shade), 1.0); }
+)";
+
 inline constexpr const char* kOverlayFragmentShader = R"(#version 330 core
 in vec2 place;
 in vec3 shade;

@@ -87,6 +87,21 @@ bool may_be_lit_at_vertices(const MotionMesh& mesh) {
   return !shows_color_map(mesh.coloring) || (mesh.appearance.metallic == 0 && mesh.appearance.transmission == 0);
 }
 
+/// Whether the ground may lie between a light and what stands before it: of lights on the hollow side of the ground,
+/// which is convex, it does not.
+bool SurfacePrograms::may_be_hidden(bool is_sun, int light) const {
+  if (!ground_) return false;
+  if (!is_sun) return !is_hollow_at(*ground_, scene_.area_lights[static_cast<std::size_t>(light)].center);
+  const Vec3f towards = -scene_.suns[static_cast<std::size_t>(light)].direction;
+  return towards.y() <= 0 || (ground_->has_wall && towards.dot(ground_->along) > 0);
+}
+
+bool SurfacePrograms::ground_hides() const {
+  const auto is_hidden = [&](bool is_sun) { return [this, is_sun](int k) { return may_be_hidden(is_sun, k); }; };
+  return std::any_of(lights_.lamps.begin(), lights_.lamps.end(), is_hidden(false)) ||
+         std::any_of(lights_.suns.begin(), lights_.suns.end(), is_hidden(true));
+}
+
 /// The sum of what the lights send.
 std::string SurfacePrograms::lights_text() const {
   std::string text = "vec3(0.0)";
@@ -94,7 +109,11 @@ std::string SurfacePrograms::lights_text() const {
     int layer = -1;
     for (std::size_t k = 0; k < view_.shadows.size(); ++k)
       if (view_.shadows[k].is_sun == is_sun && view_.shadows[k].light == light) layer = static_cast<int>(k);
-    text += fmt::format(" + {}({}, {}, skin)", is_sun ? "from_sun" : "from_lamp", place, layer);
+    std::string open = "1.0";
+    if (may_be_hidden(is_sun, light))
+      open = is_sun ? fmt::format("ground_open(sun_towards[{}], 1e30)", place)
+                    : fmt::format("ground_open(lamp_center[{}] - world_position, 1.0)", place);
+    text += fmt::format(" + {}({}, {}, {}, skin)", is_sun ? "from_sun" : "from_lamp", place, layer, open);
   };
   for (std::size_t k = 0; k < lights_.lamps.size(); ++k) add(false, k, lights_.lamps[k]);
   for (std::size_t k = 0; k < lights_.suns.size(); ++k) add(true, k, lights_.suns[k]);
@@ -111,8 +130,9 @@ const GlProgram& SurfacePrograms::program(const Needs& needs, bool at_vertices, 
   begin += fmt::format("#define SHADOWS {}\n#define LIGHTS(skin) {}\n#define AT_VERTICES {}\n#define SHADOW_BLUR {}\n",
                        in_shadow ? view_.shadows.size() : 0, lights_text(), at_vertices ? 1 : 0,
                        at_vertices ? "5.0" : "1.0");
-  begin += fmt::format("#define LAMPS {}\n#define SUNS {}\n", std::max<std::size_t>(1, lights_.lamps.size()),
-                       std::max<std::size_t>(1, lights_.suns.size()));
+  begin += fmt::format("#define LAMPS {}\n#define SUNS {}\n#define GROUND_HIDES {}\n",
+                       std::max<std::size_t>(1, lights_.lamps.size()), std::max<std::size_t>(1, lights_.suns.size()),
+                       ground_hides() ? 1 : 0);
   const std::string functions = std::string(kEnvironmentFunctions) + kDisplayFunctions + kSurfaceFunctions;
   const std::string attributes = begin + kSurfaceAttributes;
   const bool display_last = needs.at("COLOR_MAP") != 0;
@@ -183,6 +203,14 @@ void SurfacePrograms::set_lights(const GlProgram& surface) const {
     surface.set("sun_towards", k, Vec3f(-sun.direction.normalized()));
     surface.set("sun_irradiance", k, sun.irradiance);
   }
+  if (!ground_) return;
+  surface.set("hide_across", ground_->across);
+  surface.set("hide_along", ground_->along);
+  surface.set("hide_height", ground_->height);
+  surface.set("hide_half", ground_->half_width);
+  surface.set("hide_floor_end", ground_->floor_end);
+  surface.set("hide_radius", ground_->has_wall ? ground_->radius : 0.0f);
+  surface.set("hide_top", ground_->top);
 }
 
 void SurfacePrograms::set_shadows(const GlProgram& surface) const {
@@ -202,6 +230,9 @@ void SurfacePrograms::set_appearance(const GlProgram& surface, const MotionMesh&
   surface.set("roughness", look.roughness);
   surface.set("metallic", look.metallic);
   surface.set("specular", look.specular);
+  // What has no coat does not reflect along the surface either, as the path tracer has it.
+  const bool is_coated = look.specular > 0 || look.transmission > 0;
+  surface.set("grazing", look.metallic + (1 - look.metallic) * (is_coated ? 1.0f : 0.0f));
   surface.set("flat_normals", flat ? 1 : 0);
 }
 
@@ -248,9 +279,7 @@ void SurfacePrograms::set_ground(const GlProgram& surface, const Ground& ground)
   surface.set("sweep", ground.sweep);
   surface.set("across", pattern.across());
   surface.set("along", pattern.along());
-  // The plane's edge fades into the sky; a backdrop fills the picture.
-  surface.set("fade_start", plane ? 0.35f * ground.size : 1e30f);
-  surface.set("fade_end", plane ? 0.5f * ground.size : 2e30f);
+  surface.set("ground_edge", plane ? 0.5f * ground.size : 1e30f);
 }
 
 }  // namespace softreel

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "render/preview/egl/gpu_textures.h"
 #include "render/preview/preview_lights.h"
 #include "render/preview/shadow_views.h"
+#include "render/scene/ground_mesh.h"
 #include "render/scene/scene.h"
 
 namespace softreel {
@@ -59,7 +61,9 @@ bool may_be_lit_at_vertices(const MotionMesh& mesh);
 class SurfacePrograms {
  public:
   SurfacePrograms(const Scene& scene, const SurfaceView& view, GlPrograms& programs, GpuTextures& textures)
-      : scene_(scene), lights_(preview_lights(scene)), view_(view), programs_(programs), textures_(textures) {}
+      : scene_(scene), lights_(preview_lights(scene)), view_(view), programs_(programs), textures_(textures) {
+    if (scene.ground) ground_ = ground_shape(*scene.ground, scene.camera);
+  }
 
   /// Makes the program for a body current. glass: it has a second output, the factor of what is behind.
   void use_for_body(const MotionMesh& mesh, bool flat, bool at_vertices, bool glass);
@@ -70,6 +74,8 @@ class SurfacePrograms {
   /// Names of #defines and their values.
   using Needs = std::map<std::string, int>;
   const GlProgram& program(const Needs& needs, bool at_vertices, bool in_shadow);
+  bool may_be_hidden(bool is_sun, int light) const;
+  bool ground_hides() const;
   std::string lights_text() const;
   void set_picture(const GlProgram& surface) const;
   void set_lights(const GlProgram& surface) const;
@@ -82,6 +88,7 @@ class SurfacePrograms {
   const Scene& scene_;
   const PreviewLights lights_;
   const SurfaceView& view_;
+  std::optional<GroundShape> ground_;
   GlPrograms& programs_;
   GpuTextures& textures_;
   std::set<const GlProgram*> prepared_;  ///< know what all shaders are told

@@ -11,8 +11,9 @@ namespace softreel {
 /// #defines of what they need (all 0 or 1, if nothing else is said):
 ///   VIEW         0 standard, 1 filmic, 2 aces-fit, 3 raw;  SKY_IMAGE: the surroundings are an image
 ///   LAMPS, SUNS  how many there are, at least 1
-///   LIGHTS(s)    the sum of from_lamp(k, layer, s) and from_sun of all lights, written out, as indices that are known
-///                make it a sixth faster; layer: of the shadow map; -1: none
+///   LIGHTS(s)    the sum of from_lamp(k, layer, open, s) and from_sun of all lights, written out, as indices that are
+///                known make it a sixth faster; layer: of the shadow map; -1: none
+///   GROUND_HIDES    there is a light that the ground may hide: open is ground_open
 ///   SHADOWS      how many maps;  SHADOW_BLUR: texels
 ///   AT_VERTICES  lit at vertices, where triangles are about as small as pixels: software OpenGL shades whole blocks of
 ///                4 x 4 pixels for each triangle that touches them

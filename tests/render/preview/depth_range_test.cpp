@@ -25,7 +25,7 @@ Scene low_camera() {
 constexpr int kWide = 64, kHigh = 48;
 
 DepthRange range_of(const Scene& scene) {
-  return depth_range(scene.meshes, ground_mesh(*scene.ground, scene.camera, 1), {},
+  return depth_range(scene.meshes, ground_mesh(*scene.ground, scene.camera, 1), {}, {},
                      camera_frame(scene.camera, kWide, kHigh));
 }
 

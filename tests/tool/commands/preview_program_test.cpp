@@ -163,10 +163,21 @@ TEST_F(PreviewCommand, AllFramesMakeAMovie) {
 
 TEST(Preview, RefusesKindsAndModesThatItDoesNotKnow) {
   const std::string folder = shot_folder("preview_refuses");
-  for (const char* options : {"--gizmos none,pins", "--gizmos springs", "--mode nice"}) {
+  for (const auto& [options, said] : {std::pair("--gizmos none,pins", "none stands beside other kinds"),
+                                      {"--gizmos springs", "springs"},
+                                      {"--mode nice", "mode"}}) {
     const Outcome outcome = run(fmt::format("softreel preview {0}/shot.toml --output {0}/out {1}", folder, options));
     EXPECT_EQ(outcome.status, 2) << options;
-    EXPECT_NE(outcome.err.find(std::string(options).substr(2, 4)), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Preview, TakesAListOfMarksWithCommasOrRepeated) {
+  const std::string folder = shot_folder("preview_marks");
+  for (const char* options : {"--gizmos pins,pulls,regions", "--gizmos=pins,pulls", "--gizmos pins --gizmos regions"}) {
+    const Outcome outcome =
+        run(fmt::format("softreel preview {0}/shot.toml --output {0}/out --dry-run {1}", folder, options));
+    EXPECT_EQ(outcome.status, 0) << options << outcome.err;
   }
 }
 
