@@ -1,6 +1,7 @@
 #include "core/constraints/targets.h"
 
 #include <cmath>
+#include <limits>
 
 namespace softreel {
 namespace {
@@ -63,6 +64,19 @@ std::vector<Vec3> guided_points(const Guide& guide, std::span<const Vec3> rest, 
 Index pulling_range(const Pull& pull, double frame) {
   const Index range = active_range(pull.active, frame);
   return range >= 0 && pull.stiffness.at(frame) > 0 ? range : -1;
+}
+
+Index count_jumps(const Pull& pull, double frame) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto jumps_at = [&](double border, double beyond) {
+    return !is_active(pull.active, std::nextafter(border, beyond)) && pull.stiffness.at(border) > 0;
+  };
+  Index count = 0;
+  for (const FrameRange& range : pull.active) {
+    count += range.first <= frame && jumps_at(range.first, -kInfinity) ? 1 : 0;
+    count += range.last < frame && jumps_at(range.last, kInfinity) ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace softreel

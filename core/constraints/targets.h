@@ -35,4 +35,8 @@ void update_grab(Grab& grab, Index range, double frame, const Positions& positio
 /// The active range of a pull in which it pulls; -1 where it is off or has no strength.
 Index pulling_range(const Pull& pull, double frame);
 
+/// How often the force of a pull has come or gone at once until the end of a step at `frame`: where it was switched on
+/// or off while it had strength. What has none, or comes from none by its keys, pushes nothing.
+Index count_jumps(const Pull& pull, double frame);
+
 }  // namespace softreel

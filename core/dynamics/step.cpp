@@ -18,6 +18,7 @@
 
 #include "core/base/error.h"
 #include "core/base/fingerprint.h"
+#include "core/constraints/targets.h"
 #include "core/dynamics/linear_system.h"
 #include "core/dynamics/step_work.h"
 #include "core/elasticity/tension.h"
@@ -328,14 +329,14 @@ void correct_translations(const Simulator::Parts& parts, StepWork& work) {
   }
 }
 
-/// Of which nodes are held and which pulls are on; never 0. These change where a step begins. Stiffness that is keyed
-/// to nothing does so at the end of one, to which it is early already; bonds of glue come and go too often to begin
-/// anew with each.
+/// Of which nodes are held and how often pulls have jumped; never 0. These change where a step begins. Stiffness that
+/// is keyed to nothing does so at the end of one, to which it is early already; bonds of glue come and go too often to
+/// begin anew with each.
 std::uint64_t fingerprint_of(const PinnedNodes& pinned, const std::vector<Pull>& pulls, double frame) {
   Fingerprint print;
   for (std::size_t i = 0; i < pinned.held.size(); ++i)
     if (pinned.held[i] != 0) print.add(static_cast<Index>(i));
-  for (const Pull& pull : pulls) print.add(std::uint64_t{is_active(pull.active, frame)});
+  for (const Pull& pull : pulls) print.add(count_jumps(pull, frame));
   return print.value() | 1U;
 }
 

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include "core/constraints/targets.h"
 #include "core/dynamics/frame_steps.h"
 
 namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give other frames.
-constexpr const char* kSimulationVersion = "simulation 30";
+constexpr const char* kSimulationVersion = "simulation 31";
 
 void add(KeyHasher& key, const Transform& t) {
   key.add(t.translate).add(t.rotate).add(t.scale);
@@ -45,6 +46,13 @@ void add_constraints(KeyHasher& key, const BodyConstraints& constraints, double 
     if (sticks && !glue.stiffness.keys.empty()) key.add(glue.stiffness.at(frame));
     if (sticks && glue.close_frames > 0) key.add(frame);
   }
+}
+
+/// What integrators with a memory begin anew at: by their values, pulls of no strength are as those that are off.
+void add_jumps(KeyHasher& key, const Shot& shot, const BodyConstraints& constraints, double frame) {
+  if (shot.solver.integrator == Integrator::Euler) return;
+  for (const Pull& pull : constraints.pulls)
+    if (!pull.active.empty()) key.add(count_jumps(pull, frame));
 }
 
 /// What is followed and whether it is grabbed, at all frames; nothing where neither is, as in shots without them.
@@ -106,6 +114,8 @@ StageKey frame_key(const Shot& shot, const BodyConstraints& constraints, const S
                    bool is_start) {
   KeyHasher key("frame");
   key.add(previous);
+  // What grabs or sticks remembers since which frame.
+  if (is_start && (has_grabs(constraints) || !constraints.glues.empty())) key.add(frame);
   if (is_start && shot.settings.mode == SimulationMode::Dynamic && shot.settings.start == StartState::Rest) {
     if (has_grabs(constraints)) add_constraints(key, constraints, frame);
     return key.key();
@@ -115,8 +125,11 @@ StageKey frame_key(const Shot& shot, const BodyConstraints& constraints, const S
     return key.key();
   }
   const int ticks = frame_grid(shot.solver).ticks_per_frame();
-  for (int tick = 1; tick <= ticks; ++tick)
-    add_constraints(key, constraints, frame - 1 + static_cast<double>(tick) / ticks);
+  for (int tick = 1; tick <= ticks; ++tick) {
+    const double at = frame - 1 + static_cast<double>(tick) / ticks;
+    add_constraints(key, constraints, at);
+    add_jumps(key, shot, constraints, at);
+  }
   return key.key();
 }
 

@@ -70,6 +70,38 @@ TEST(LettingGo, LeavesIntegratorsTheirOrder) {
   EXPECT_NEAR(error_of_throw(Integrator::Bdf2, 2) / error_of_throw(Integrator::Bdf2, 4), 4, 0.2);
 }
 
+/// A bar on its pin, and a pull of a stiffness at a frame in a range.
+std::vector<Vec3> pulled_positions(Integrator integrator, const Track<double>& stiffness, const FrameRange& range) {
+  SolverParams params = testing::exact_params();
+  params.integrator = integrator;
+  BodyModel model = carried_bar({4, 1, 1}, {1e5, 0.3, 1000, 0, 0}, Vec3(0, -9.81, 0));
+  model.pins[0].points = {0};
+  model.pins[0].active.clear();
+  Pull pull;
+  pull.points = {static_cast<Index>(model.surface_points.size()) - 1};
+  pull.weights = {1};
+  pull.track.keys = {{0, {}, Ease::Linear}};
+  pull.stiffness = stiffness;
+  pull.active = {range};
+  model.pulls = {pull};
+  Bench bench(std::move(model), params);
+  run_to(bench, 0, 12, 2);
+  return bench.simulator.state().positions;
+}
+
+TEST(LettingGo, OfWhatHasNoStrengthIsNoJump) {
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
+    const Track<double> none{{{0, 0, Ease::Linear}}}, some{{{0, 10, Ease::Linear}}},
+        swell{{{4, 0, Ease::Linear}, {5, 10, Ease::Linear}, {7, 10, Ease::Linear}, {8, 0, Ease::Linear}}};
+    const auto moved = [&](const Track<double>& stiffness, const FrameRange& range) {
+      return pulled_positions(integrator, stiffness, range);
+    };
+    EXPECT_EQ(moved(none, {3, 9}), moved(none, {5, 6}));
+    EXPECT_EQ(moved(swell, {3, 9}), moved(swell, {4, 8}));
+    EXPECT_NE(moved(some, {3, 9}), moved(some, {4, 9}));
+  }
+}
+
 /// A step that is not taken leaves what the state remembers.
 TEST(LettingGo, IsForgottenWithARejectedStep) {
   for (const Integrator integrator : {Integrator::Bdf2, Integrator::Newmark}) {

@@ -71,6 +71,49 @@ TEST(FrameKey, GlueThatBindsAnewInAnotherRangeChangesTheFramesFromThereOn) {
   EXPECT_NE(one[10], two[10]);
 }
 
+/// Stored states hold the frames since which something is grabbed or sticks.
+TEST(FrameKey, OfAShotThatBeginsAtAnotherFrameIsTheSameUnlessSomethingGrabsOrSticks) {
+  const auto last_key = [](int shift, bool grab, bool glue) {
+    Shot shot = simple_shot();
+    BodyConstraints constraints = simple_constraints();
+    constraints.pins[0].grab = grab;
+    if (glue) constraints.glues.emplace_back();
+    shot.settings.first_frame += shift;
+    shot.settings.last_frame += shift;
+    for (Key<Transform>& key : constraints.pins[0].track.keys) key.frame += shift;
+    return simulation_keys(shot, shot.solver, constraints, "filled", "materials").back();
+  };
+  EXPECT_EQ(last_key(0, false, false), last_key(1000, false, false));
+  EXPECT_NE(last_key(0, true, false), last_key(1000, true, false));
+  EXPECT_NE(last_key(0, false, true), last_key(1000, false, true));
+}
+
+/// A pull from frame 10 to 20 by a stiffness whose keys are given.
+StageKey key_with_pull(std::vector<Key<double>> stiffness, FrameRange range, Integrator integrator) {
+  Shot shot = simple_shot();
+  shot.solver.integrator = integrator;
+  BodyConstraints constraints = simple_constraints();
+  Pull& pull = constraints.pulls.emplace_back();
+  pull.track.keys = {{1, {}, Ease::Smooth}};
+  pull.stiffness.keys = std::move(stiffness);
+  pull.active = {range};
+  return simulation_keys(shot, shot.solver, constraints, "filled", "materials").back();
+}
+
+TEST(FrameKey, KnowsWherePullsJumpAndNotWhereTheyHaveNoStrength) {
+  for (const Integrator integrator : {Integrator::Euler, Integrator::Bdf2, Integrator::Newmark}) {
+    const std::vector<Key<double>> none{{1, 0, Ease::Linear}};
+    EXPECT_EQ(key_with_pull(none, {10, 20}, integrator), key_with_pull(none, {12, 30}, integrator));
+    // Comes from nothing at frame 12, and goes back to it by frame 18, wherever between it is switched.
+    const std::vector<Key<double>> swell{
+        {12, 0, Ease::Linear}, {14, 50, Ease::Linear}, {16, 50, Ease::Linear}, {18, 0, Ease::Linear}};
+    EXPECT_EQ(key_with_pull(swell, {10, 20}, integrator), key_with_pull(swell, {12, 18}, integrator));
+    // Switched on at 13 it jumps there, which Euler, who has no memory, need not know: the values are the same.
+    EXPECT_EQ(key_with_pull(swell, {10, 20}, integrator) == key_with_pull(swell, {13, 20}, integrator),
+              integrator == Integrator::Euler);
+  }
+}
+
 TEST(FrameKey, ALongerShotKeepsItsFrames) {
   EXPECT_EQ(first_changed([](Shot& s, BodyConstraints&) { s.settings.last_frame = 90; }), 0);
 }
