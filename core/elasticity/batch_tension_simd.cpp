@@ -29,6 +29,31 @@ PrincipalAxes find_tension(const Symmetric& strain, const Lanes& pressure, const
   return tension;
 }
 
+/// Of the batch in a state, in the frame of the rest shape.
+PrincipalAxes find_tension_in(std::span<const Vec3> positions, const Matrix& Q, const ElementBatch& batch,
+                              const Lanes& least) {
+  const Symmetric strain =
+      detail::find_elastic_strain(Q, detail::gradient<Lanes>(batch, positions, stdx::vector_aligned));
+  const Lanes pressure = detail::find_pressure(batch, detail::trace(strain), stdx::vector_aligned).value;
+  return find_tension(strain, pressure, Lanes(batch.mu, stdx::vector_aligned), least);
+}
+
+Lanes greatest(const Vector& values) {
+  return stdx::max(stdx::max(values[0], values[1]), values[2]);
+}
+
+/// That of the step's start, no greater than the one at the extrapolated place.
+PrincipalAxes find_tension_at_start(const StepSource& source, const ElementBatch& batch, std::size_t first,
+                                    const PrincipalAxes& there, const Lanes& least) {
+  const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.start_rotations, first));
+  PrincipalAxes tension = find_tension_in(source.start_positions, Q, batch, least);
+  const Lanes most = greatest(tension.values);
+  Lanes share = greatest(there.values) / most;
+  where(!(share < Lanes(1)), share) = Lanes(1);
+  for (Lanes& value : tension.values) value *= share;
+  return tension;
+}
+
 /// sum_i b_i x u_i of L = sum_i u_i b_i^T: twice the turn of its antisymmetric part.
 Vector curl(const Matrix& L) {
   return {L[7] - L[5], L[2] - L[6], L[3] - L[1]};
@@ -58,12 +83,10 @@ Vector find_way(const StepSource& source, const ElementBatch& batch, const Matri
 
 BatchTension find_batch_tension(const StepSource& source, const ElementBatch& batch, std::size_t first) {
   const Matrix Q = detail::rotation_matrix(detail::load_rotations<Lanes>(source.rotations, first));
-  const Symmetric strain =
-      detail::find_elastic_strain(Q, detail::gradient<Lanes>(batch, source.positions, stdx::vector_aligned));
-  const Lanes mu(batch.mu, stdx::vector_aligned), reach(source.seconds.position);
-  const Lanes pressure = detail::find_pressure(batch, detail::trace(strain), stdx::vector_aligned).value;
-  PrincipalAxes tension =
-      find_tension(strain, pressure, mu, detail::find_least_tension<Lanes>(source, first, stdx::vector_aligned));
+  const Lanes mu(batch.mu, stdx::vector_aligned), reach(source.seconds.position),
+      least = detail::find_least_tension<Lanes>(source, first, stdx::vector_aligned);
+  PrincipalAxes tension = find_tension_in(source.positions, Q, batch, least);
+  if (!source.start_positions.empty()) tension = find_tension_at_start(source, batch, first, tension, least);
   BatchTension result;
   const Vector moment = product(detail::matrix_of(tension), find_way(source, batch, Q));
   for (std::size_t c = 0; c < 3; ++c) moment[c].copy_to(result.moment[c], stdx::vector_aligned);

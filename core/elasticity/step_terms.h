@@ -69,6 +69,10 @@ struct StepSource {
   /// Pa s, per lane of the body's batches: find_tension_limits. Empty: no curvatures.
   std::span<const double> tension_limits = {};
   bool secant_at_limit = false;  ///< of step_pressure_slope: to be taken where the positions are extrapolated
+  /// Of the step's start, where the positions above are extrapolated from there: tension is no greater than it was then
+  /// (core/elasticity/tension.h). Empty: it is that of the positions above.
+  std::span<const Vec3> start_positions = {};
+  std::span<const Quaternion> start_rotations = {};
 };
 
 /// Slope of the dilatation stress p that a step of one solve reckons with, Pa; reach = seconds.position, damping = b.

@@ -18,6 +18,22 @@ bool may_be_tense(const ElasticLaw& law, const Mat3& strain, double least) {
   return (2 * law.mu - least) * sum >= 2 * (2 * law.mu - p) || p > 2 * law.mu;
 }
 
+double greatest_value(const Mat3& symmetric) {
+  return Eigen::SelfAdjointEigenSolver<Mat3>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
+/// That of the step's start, turned to the axes of the extrapolated place, and no greater than the one there.
+Mat3 tension_at_start(const ElasticBody& body, const StepSource& source, std::size_t e, const Mat3& there,
+                      double least) {
+  const Mat3 Q = source.start_rotations[e].toRotationMatrix(),
+             F = deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], source.start_positions));
+  const Mat3 then = tension_curvature(body.laws[e], Q, F, least);
+  const double most = greatest_value(then);
+  if (!(most > 0)) return Mat3::Zero();
+  const Mat3 turn = source.rotations[e].toRotationMatrix() * Q.transpose();
+  return std::min(1.0, greatest_value(there) / most) * (turn * then * turn.transpose());
+}
+
 }  // namespace
 
 AlignedVector<double> find_tension_limits(const ElasticBody& body, std::span<const double> thickness,
@@ -48,8 +64,9 @@ std::vector<Mat3> find_tension_curvatures(const ElasticBody& body, const StepSou
                      F = deformation_gradient(body.shapes[e].gradients, nodes_of(body.tets[e], source.positions));
           const double least = source.tension_limits[e] / share;
           if (!may_be_tense(law, corotated_strain(Q, F), least)) continue;
-          curvatures[e] =
-              reach / ((reach + source.damping_stiffness[e]) * law.mu) * tension_curvature(law, Q, F, least);
+          Mat3 tension = tension_curvature(law, Q, F, least);
+          if (!source.start_positions.empty()) tension = tension_at_start(body, source, e, tension, least);
+          curvatures[e] = reach / ((reach + source.damping_stiffness[e]) * law.mu) * tension;
           ++found;
         }
         return found;

@@ -174,6 +174,37 @@ TEST(StepTension, HasTheMatrixOfItsScalarTwinInFloat) {
     }
 }
 
+TEST(StepTension, IsNoGreaterThanAtTheStepsStart) {
+  const Taut taut(1.5), less(1.2);
+  Taut still(1.5);
+  still.positions = still.mesh.nodes;
+  still.rotations.assign(still.rotations.size(), Quaternion::Identity());
+  const auto curvatures = [&](const Taut& at, const Taut* start) {
+    StepSource source = at.source();
+    if (start != nullptr) source.start_positions = start->positions, source.start_rotations = start->rotations;
+    const std::vector<Mat3> found = find_tension_curvatures(at.body, source, at.threads);
+    StepTerms terms;
+    at.forces(source, terms);
+    for (std::size_t e = 0; e < found.size(); ++e) {  // and the vector twin
+      const float* rows = terms.curvature_of(e);
+      for (int k = 0; k < 9; ++k)
+        EXPECT_NEAR(rows == nullptr ? 0.0f : rows[4 * (k / 3) + k % 3], found[e](k / 3, k % 3), 1e-5) << e;
+    }
+    return found;
+  };
+  const auto greatest = [](const Mat3& C) { return Eigen::SelfAdjointEigenSolver<Mat3>(C).eigenvalues()[2]; };
+  const std::vector<Mat3> plain = curvatures(taut, nullptr), from_itself = curvatures(taut, &taut),
+                          from_less = curvatures(taut, &less), of_less = curvatures(less, nullptr),
+                          from_more = curvatures(less, &taut);
+  for (std::size_t e = 0; e < plain.size(); ++e) {
+    EXPECT_LT((from_itself[e] - plain[e]).norm(), 1e-12);
+    EXPECT_LE(greatest(from_less[e]), std::min(greatest(plain[e]), greatest(of_less[e])) + 1e-12);
+    EXPECT_LE(greatest(from_more[e]), std::min(greatest(plain[e]), greatest(of_less[e])) + 1e-12);
+  }
+  EXPECT_GT(greatest(from_less[0]), 0.9 * greatest(of_less[0])) << "or nothing is left of it";
+  for (const Mat3& C : curvatures(taut, &still)) EXPECT_LT(C.norm(), 1e-12) << "a body at rest has none";
+}
+
 TEST(StepTension, TakesNoMemoryFromACalmBodyAndGivesItBack) {
   const Taut taut(1.5), calm(1.0);
   const auto slabs_with = [](const StepTerms& terms) {
