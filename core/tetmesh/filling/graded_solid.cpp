@@ -42,6 +42,9 @@ struct Try {
   bool is_more_whole_than(const Try& other) const {
     return std::tie(loose, tunnels) < std::tie(other.loose, other.tunnels);
   }
+  double distance_to(const Solid& solid, const Threads& threads) const {
+    return measure_deviation(solid.surface, filling.stuffed.mesh, threads).two_way();
+  }
 };
 
 /// Pieces are told apart only where there are several; then params get to know what they may be.
@@ -114,10 +117,13 @@ GradedFilling fill_whole(const Solid& solid, ErrorBudgetParams params, const std
     best = std::move(next);
   }
   if (params.tets > 0 && best.count() > 0) best.tunnels = count_new_tunnels(best.filling.stuffed, solid);
-  if (params.tets > 0 && best.loose + best.tunnels > 0) {
-    constexpr double kMostOff = 0.25;  // far more than asked is no answer
+  constexpr Index kPerforated = 8;   // fewer tunnels are limbs that grew together, which even edges part less well
+  constexpr double kMostOff = 0.25;  // far more than asked is no answer
+  if (params.tets > 0 && (best.loose > 0 || best.tunnels >= kPerforated)) {
     Try even = try_even_filling(solid, params, name, threads, log);
-    if (even.miss_of(params.tets) < kMostOff && even.is_more_whole_than(best)) best = std::move(even);
+    if (even.miss_of(params.tets) < kMostOff && even.is_more_whole_than(best) &&
+        even.distance_to(solid, threads) <= best.distance_to(solid, threads))
+      best = std::move(even);
   }
   best.lines.pass_on(log);
   return std::move(best.filling);
