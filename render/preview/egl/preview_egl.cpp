@@ -300,10 +300,15 @@ void EglPreview::draw_surroundings(const Scene& scene, const CameraFrame& camera
   const auto draw_ground = [&](const std::vector<PixelRect>& parts, bool in_shadow) {
     if (parts.empty()) return;
     programs.use_for_ground(*scene.ground, around.ground, in_shadow);
+    // Soles that lie in the floor are not seen through it.
+    const bool from_below = camera.position.y() < scene.ground->height;
+    if (from_below) glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(-1, -16);
     for (const PixelRect& rect : parts) {
       draw_only_in(rect);
       ground_->draw();
     }
+    glDisable(GL_POLYGON_OFFSET_FILL);
   };
   if (scene.ground) {
     const PixelRect shadowed = common(part, around.shadowed);

@@ -92,6 +92,23 @@ TEST_F(PreviewAgreement, APlaneReachesToItsEdges) {
   }
 }
 
+TEST_F(PreviewAgreement, SolesAreNotSeenThroughTheFloorTheyLieIn) {
+  Scene scene = on_ground(GroundStyle::Plane);
+  scene.ground->appearance = matte(0);
+  scene.ground->appearance.emission = Vec3f(0.5f, 0, 0);
+  Appearance glowing = matte(0);
+  glowing.emission = Vec3f(0, 0.5f, 0);
+  scene.meshes = {square(0.5f, 0, glowing)};
+  for (const float height : {-1.0f, -3.0f}) {
+    scene.camera.position = Vec3f(0.3f, height, 2);
+    scene.camera.target = Vec3f::Zero();
+    const DisplayImage image = draw(scene);
+    for (const float x : {-0.4f, 0.0f, 0.37f})
+      for (const float z : {-0.4f, 0.1f, 0.4f})
+        EXPECT_EQ(pixel_of(image, scene.camera, Vec3f(x, 0, z)).y(), 0) << height << ": " << x << " " << z;
+  }
+}
+
 TEST_F(PreviewAgreement, VisibleLampsAreAddedToWhatIsBehindThemOnTheirBrightSide) {
   for (const LampShape shape : {LampShape::Rectangle, LampShape::Disk, LampShape::Sphere}) {
     Scene scene = scene_in_sky(0);
