@@ -34,8 +34,9 @@ class Hash {
 
 void add_camera(Hash& hash, const Camera& camera) {
   for (const Vec3f* v : {&camera.position, &camera.target, &camera.up}) hash.add(v->data(), sizeof(Vec3f));
-  for (const float f : {camera.focal_length_mm, camera.sensor_width_mm, camera.f_number, camera.focus_distance})
-    hash.add(&f, sizeof f);
+  // Without a lens nothing is out of focus, and the key of a picture does not know where that would be.
+  const float focus = camera.f_number > 0 ? camera.focus_distance : 0.0f;
+  for (const float f : {camera.focal_length_mm, camera.sensor_width_mm, camera.f_number, focus}) hash.add(&f, sizeof f);
 }
 
 }  // namespace

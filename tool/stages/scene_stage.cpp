@@ -296,7 +296,7 @@ void SceneStage::add_tracing(KeyHasher& key, const std::vector<Camera>& camera_m
 }
 
 StageKey SceneStage::trace_key(int frame) const {
-  KeyHasher key("trace 14");
+  KeyHasher key("trace 15");
   const Look look = this->look(frame);
   add_look(key, look);
   add_tracing(key, look.camera_motion);
@@ -314,7 +314,7 @@ StageKey SceneStage::preview_key(int frame) const {
 }
 
 StageKey SceneStage::content_key(int frame, const Scene& scene) const {
-  KeyHasher key("picture 7");
+  KeyHasher key("picture 8");
   Look look = this->look(frame);
   look.camera = scene.camera;  // a turntable's is its own
   add_look(key, look);

@@ -81,6 +81,13 @@ TEST(PictureHash, SeesGeometryAndCameraButNotLightsOrMaterials) {
   Scene moved = scene;
   moved.camera.focal_length_mm += 1e-3f;
   EXPECT_NE(hash, picture_hash(moved));
+  for (const float f_number : {0.0f, 2.0f}) {  // without a lens there is no focus
+    Scene near = scene;
+    near.camera.f_number = f_number;
+    Scene far = near;
+    far.camera.focus_distance = 5;
+    EXPECT_EQ(picture_hash(near) == picture_hash(far), f_number == 0);
+  }
   Scene relit = scene;
   relit.suns.clear();
   relit.meshes[0].appearance.roughness = 1;
