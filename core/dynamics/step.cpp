@@ -69,7 +69,7 @@ StepSource find_source(Simulator::Parts& parts, const StepWork& work, std::span<
         parts.body, find_thickness(parts.model.mesh, element_pattern(parts), youngs_moduli(parts.model.materials)),
         parts.model.materials, explicit_share(parts.params));
   source.tension_limits = parts.tension_limits;
-  if (!source.secant_at_limit) return source;
+  if (!source.secant_at_limit) return source;  // those are the start's
   source.start_positions = parts.state.positions;
   source.start_rotations = parts.state.rotations;
   return source;

@@ -121,8 +121,9 @@ GradedFilling fill_whole(const Solid& solid, ErrorBudgetParams params, const std
   constexpr double kMostOff = 0.25;  // far more than asked is no answer
   if (params.tets > 0 && (best.loose > 0 || best.tunnels >= kPerforated)) {
     Try even = try_even_filling(solid, params, name, threads, log);
-    if (even.miss_of(params.tets) < kMostOff && even.is_more_whole_than(best) &&
-        even.distance_to(solid, threads) <= best.distance_to(solid, threads))
+    const bool is_answer = even.miss_of(params.tets) < kMostOff && even.is_more_whole_than(best);
+    // What is in pieces will be refused; what is only perforated may be the better one.
+    if (is_answer && (even.loose < best.loose || even.distance_to(solid, threads) <= best.distance_to(solid, threads)))
       best = std::move(even);
   }
   best.lines.pass_on(log);
