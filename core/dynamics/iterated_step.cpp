@@ -43,8 +43,7 @@ StrainDamping find_strain_damping(const Simulator::Parts& parts, const StepWork&
   // Newmark's own strain rate would be that of its velocities, which keep for ever what of a rigid turn is a stretch in
   // them. By the strains alone it is of second order and stable, too: in the linear oscillator's recurrence the
   // difference's imaginary part has one sign on the unit circle, which no root then crosses.
-  const bool euler = parts.params.integrator == Integrator::Euler;
-  const BackwardDifference rate = euler ? BackwardDifference{work.step.h, 0} : backward_difference(state, work.step.h);
+  const BackwardDifference& rate = work.step.rate;
   damping.stretches = find_stretches(parts.body, rotation, state.positions, state.rotations, parts.threads);
   if (rate.back != 0) {
     const std::vector<Mat3> before =

@@ -144,8 +144,9 @@ class Simulator {
 
   /// One step of `seconds` from the present state; constraints are those at `frame`, the step's end. Nodes under a pin
   /// reach their targets exactly. On failure the state is left as it was; pins that contradict each other there are an
-  /// input_error. BDF2's first step, and its first after a pin or pull began or let go, is one of Euler; Newmark's
-  /// starts from the acceleration that the forces give then. A body at rest is left as it is, to the last bit.
+  /// input_error. BDF2's first step, and its first after a pin or pull began or let go, is one of two stages
+  /// (kFirstStage of time_step.h); Newmark's starts from the acceleration that the forces give then. A body at rest is
+  /// left as it is, to the last bit.
   ///
   /// error_limit: over the body's size. The error is that of the integrator, estimated from the distance between the
   /// step's end and the predictor of x + h v + h^2 a / 2 (Euler: x + h v); what Linearize::Start adds to it for an

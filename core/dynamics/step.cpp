@@ -1,28 +1,13 @@
-/// One implicit step, by one linear solve, eq. (2), for every integrator, or iterated (design 4.4).
-///
-/// With Rayleigh damping C = Ma + Kb (both per element), the integrator's bases x', v' and seconds t, r of TimeStep,
-/// and forces f linearised at positions x* with their rotations, the velocities v at the end have
-///   (M + t C + t r K) v = M v' + t f + t K (x* - x').
-/// Solved is the change d = v - v' by S d = right side - S v', S = M + t Ma + sum t (r + b) K_e. The paper's implicit
-/// Euler at the step's start has t = r = h and x* = x' = x: eq. (2). Unlike there, where displacements are solved for
-/// and the force correction f0 stands beside K, the elastic force is evaluated by itself: it is the same force, but
-/// exact for a capped dilatation and without the cancellation of K x against f0. Beside t r K stands t r G, the
-/// stiffness that tension adds, where leaving it out could make the body flutter (core/elasticity/tension.h): it enters
-/// matrix and right side alike, so at rest nothing changes. So does the secant where K's dilatation is at its limit, if
-/// x* is extrapolated (step_pressure_slope).
+/// A step from the present state: its beginning by the integrator, one solve or an iteration, and the state after it.
+/// The linear system is that of step_system.cpp.
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include <fmt/format.h>
-
 #include "core/base/error.h"
 #include "core/base/fingerprint.h"
 #include "core/constraints/targets.h"
-#include "core/dynamics/linear_system.h"
 #include "core/dynamics/step_work.h"
-#include "core/elasticity/tension.h"
-#include "core/elasticity/thickness.h"
 
 namespace softreel {
 
@@ -38,104 +23,6 @@ namespace {
 constexpr double kForceExcess = 0.01;
 /// What is beyond the strength of a pull softens it by their ratio in each solve, and further in the next step.
 constexpr int kMostSolves = 8;
-
-/// Relative residuals below this are rounding.
-constexpr double kLeastSensible = 1e-12;
-
-/// Share of the tension harmless by find_tension_limits that is left out: half, as thickness is only estimated. From a
-/// predictor half of a ninth, on the safe side: by linear theory Euler bears a third there and BDF2 a quarter
-/// (linearization_positions).
-double explicit_share(const SolverParams& params) {
-  // Iterated steps that recovery makes one solve linearise at the predictor.
-  const bool at_start = params.integrator == Integrator::Euler && linearization(params) == Linearize::Start;
-  return at_start ? 0.5 : 0.5 / 9;
-}
-
-/// Which nodes elements connect: bodies that glue joins do not bend as one.
-BlockPattern element_pattern(const Simulator::Parts& parts) {
-  if (parts.joints.empty()) return parts.matrix.pattern;
-  return stiffness_pattern(parts.model.mesh.tets, static_cast<Index>(parts.nodes()));
-}
-
-/// What the elements are linearised at, with their tension limits. A rotation that does not turn has no curvature, and
-/// accelerations reach no positions.
-StepSource find_source(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities) {
-  StepSource source{work.positions,          end_velocities, work.rotations,   work.step.seconds,
-                    parts.damping_stiffness, work.offsets,   work.kept_change, {}};
-  source.secant_at_limit = linearization(parts.params) != Linearize::Start;
-  if (parts.params.rotation == RotationMethod::None || source.seconds.position == 0) return source;
-  if (parts.tension_limits.empty())
-    parts.tension_limits = find_tension_limits(
-        parts.body, find_thickness(parts.model.mesh, element_pattern(parts), youngs_moduli(parts.model.materials)),
-        parts.model.materials, explicit_share(parts.params));
-  source.tension_limits = parts.tension_limits;
-  if (!source.secant_at_limit) return source;  // those are the start's
-  source.start_positions = parts.state.positions;
-  source.start_rotations = parts.state.rotations;
-  return source;
-}
-
-/// S, from elements, masses and pulls.
-void assemble_step(Simulator::Parts& parts, StepWork& work) {
-  const StepSeconds& seconds = work.step.seconds;
-  std::vector<double> shares(parts.body.tets.size());
-  for (std::size_t e = 0; e < shares.size(); ++e)
-    shares[e] = seconds.velocity * (seconds.position + parts.damping_stiffness[e]);
-  find_stiffness_terms(parts.body, work.positions, work.rotations, shares, Curvature::None, parts.terms, parts.threads);
-  const StepSource source = find_source(parts, work, {});
-  take_step_slopes(parts.body, source, parts.terms, parts.threads);
-  parts.terms.curvatures = find_tension_curvatures(parts.body, source, parts.threads);
-  parts.assembler().assemble(parts.terms, work.node_terms, parts.matrix, parts.threads);
-  for (const ActivePull& pull : work.pulls)
-    add_pull_stiffness(pull, work.positions, seconds.velocity * seconds.position, parts.matrix);
-}
-
-/// forces -= scale * (secant) stiffness of a pull * vectors.
-void subtract_pull_product(const ActivePull& pull, std::span<const Vec3> positions, double scale,
-                           std::span<const Vec3> vectors, std::span<Vec3> forces) {
-  const double factor = scale * pull_factor(pull, positions);
-  for (const Spring& spring : pull.springs) {
-    Vec3 vector = Vec3::Zero();
-    for (std::size_t k = 0; k < spring.count; ++k)
-      vector += spring.weights[k] * vectors[static_cast<std::size_t>(spring.nodes[k])];
-    for (std::size_t k = 0; k < spring.count; ++k)
-      forces[static_cast<std::size_t>(spring.nodes[k])] -= factor * spring.stiffness * spring.weights[k] * vector;
-  }
-}
-
-/// The system in double: for tolerances that float does not reach, and where it failed. Rigid motions of a very stiff
-/// part, and what is soft beside it, have rows that are small beside those of its stiffness. A residual relative to all
-/// of the right side has to be smaller by as much, or they are hardly solved, which acts like forces on them: blocks
-/// 1e8 times as stiff as those between them flew apart. A body that is all of one stiffness is solved tighter with
-/// them. Where that does not come to an end, the tolerance that was asked for is enough.
-SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work) {
-  {
-    const ScopedStage stage(parts.times, "simulate/assemble");
-    work.right_side.resize(parts.nodes());
-    find_residual(parts, work, work.velocities, {}, work.right_side);
-    assemble_step(parts, work);
-  }
-  work.change.assign(parts.nodes(), Vec3::Zero());
-  if (!all_finite(work.right_side)) return {SolveStatus::Breakdown, 0, 0, false};
-  {
-    const ScopedStage stage(parts.times, "simulate/assemble");
-    eliminate_held(parts.matrix, work.pinned.held, parts.threads);
-  }
-  correct_translations(parts, work);
-  {
-    const ScopedStage stage(parts.times, "simulate/update");
-    parts.multigrid.update(parts.matrix, work.pinned.held);
-  }
-  const ScopedStage stage(parts.times, "simulate/solve");
-  const double asked = parts.params.tolerance, beyond = std::max(1.0, rigidity_beyond_float(parts, work)),
-               tolerance = std::max(asked / beyond, std::min(asked, kLeastSensible));
-  SolveReport report =
-      parts.multigrid.solve(parts.matrix, work.right_side, work.change, tolerance, 0.0, parts.params.max_iterations);
-  // A residual of 0 without success is one over a right side whose norm is not finite.
-  if (!report.ok() && report.residual > 0 && report.residual <= asked) report.status = SolveStatus::Converged;
-  correct_translations(parts, work);
-  return report;
-}
 
 SolveReport solve_once(Simulator::Parts& parts, StepWork& work, StepReport& step) {
   const double t = work.step.seconds.velocity;
@@ -172,9 +59,9 @@ std::vector<Vec3> find_accelerations(Simulator::Parts& parts, const PinnedNodes&
 }
 
 /// Bases of the integrator, such that held nodes get to their targets, and the place of linearisation.
-void begin_step(Simulator::Parts& parts, StepWork& work, double h) {
+void begin_step(Simulator::Parts& parts, StepWork& work, double h, StepStage stage) {
   const SimulationState& state = parts.state;
-  work.step = begin_time_step(parts.params, state, h);
+  work.step = begin_time_step(parts.params, state, h, stage);
   work.velocities = work.step.base_velocities;
   const bool at_start = linearization(parts.params) == Linearize::Start;
   work.positions = at_start ? state.positions : linearization_positions(parts.params, state, h);
@@ -277,16 +164,18 @@ StepReport solve_step(Simulator::Parts& parts, double frame, StepWork& work) {
   return report;
 }
 
-/// Makes the step's end the state, unless it is not finite or its error is too great.
-void accept_or_reject(Simulator::Parts& parts, StepWork& work, double error_limit, StepReport& report) {
+/// The state after the step; not ok if it is not finite.
+SimulationState take_finite_end(const Simulator::Parts& parts, StepWork& work, StepReport& report) {
   SimulationState next = advanced(parts, work);
-  if (!all_finite(next.positions) || !all_finite(next.velocities)) {
-    report.solve.status = SolveStatus::Breakdown;
-    return;
-  }
+  if (!all_finite(next.positions) || !all_finite(next.velocities)) report.solve.status = SolveStatus::Breakdown;
+  return next;
+}
+
+/// `next` becomes the state, unless its error is too great: that of the integrator, in m.
+void accept_or_reject(Simulator::Parts& parts, double error, double error_limit, SimulationState& next,
+                      StepReport& report) {
   if (std::isfinite(error_limit)) {
-    report.error =
-        estimate_error(parts.params, parts.state, work.step.h, work.pinned.held, next.positions) / parts.body_size;
+    report.error = error / parts.body_size;
     report.rejected = report.error > error_limit;
     next.previous_error = report.error;
   }
@@ -295,42 +184,66 @@ void accept_or_reject(Simulator::Parts& parts, StepWork& work, double error_limi
   parts.known_rest.known = false;
 }
 
+StepReport take_whole_step(Simulator::Parts& parts, double frame, double seconds, double error_limit, StepWork& work) {
+  begin_step(parts, work, seconds, StepStage::Whole);
+  StepReport report = solve_step(parts, frame, work);
+  if (!report.ok()) return report;
+  SimulationState next = take_finite_end(parts, work, report);
+  const bool controlled = std::isfinite(error_limit);
+  if (report.ok())
+    accept_or_reject(
+        parts, controlled ? estimate_error(parts.params, parts.state, seconds, work.pinned.held, next.positions) : 0,
+        error_limit, next, report);
+  return report;
+}
+
+/// What the first stage works on: held nodes are on their way, and all that pulls is where it will be at the step's
+/// end, which costs an error of third order once.
+StepWork first_stage_of(const SimulationState& state, const StepWork& work) {
+  StepWork stage = work;
+  for (std::size_t i = 0; i < stage.pinned.held.size(); ++i)
+    if (stage.pinned.held[i] != 0)
+      stage.pinned.targets[i] = state.positions[i] + kFirstStage * (work.pinned.targets[i] - state.positions[i]);
+  return stage;
+}
+
+void add_stage(const StepReport& stage, StepReport& report) {
+  report.solve.iterations += stage.solve.iterations;
+  report.nonlinear_iterations += stage.nonlinear_iterations;
+  report.recovery.elements = std::max(report.recovery.elements, stage.recovery.elements);
+}
+
+/// See kFirstStage. On failure the state may be that after the first stage.
+StepReport take_two_stages(Simulator::Parts& parts, double frame, double seconds, double error_limit, StepWork& work) {
+  SimulationState start = parts.state;
+  StepWork stage = first_stage_of(start, work);
+  begin_step(parts, stage, kFirstStage * seconds, StepStage::First);
+  const StepReport first = solve_step(parts, frame, stage);
+  StepReport report = first;
+  if (report.ok()) parts.state = take_finite_end(parts, stage, report);
+  if (!report.ok()) {
+    work.right_side = std::move(stage.right_side);
+    return report;
+  }
+  work.rotations = parts.state.rotations;
+  work.troubles = parts.state.troubles;
+  begin_step(parts, work, (1 - kFirstStage) * seconds, StepStage::Second);
+  report = solve_step(parts, frame, work);
+  add_stage(first, report);
+  if (!report.ok()) return report;
+  SimulationState next = take_finite_end(parts, work, report);
+  if (!report.ok()) return report;
+  next.previous_seconds = seconds;
+  next.previous_positions = std::move(start.positions);
+  next.previous_velocities = std::move(start.velocities);
+  next.previous_accelerations = std::move(start.accelerations);
+  accept_or_reject(parts,
+                   estimate_staged_error(seconds, work.pinned.held, parts.state.accelerations, next.accelerations),
+                   error_limit, next, report);
+  return report;
+}
+
 }  // namespace
-
-void find_residual(Simulator::Parts& parts, const StepWork& work, std::span<const Vec3> end_velocities,
-                   std::span<const Vec3> change, std::span<Vec3> residual) {
-  const StepSeconds& seconds = work.step.seconds;
-  const double t = seconds.velocity;
-  find_step_terms(parts.body, find_source(parts, work, end_velocities), parts.step_terms, parts.threads);
-  gather_step_forces(parts.body, parts.step_terms, residual, parts.threads);
-  const Vec3 gravity = t * parts.model.gravity;
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    residual[i] += parts.masses.mass[i] * gravity - t * parts.masses.damping[i] * work.velocities[i];
-    if (!change.empty()) residual[i] -= work.node_terms[i] * change[i];
-  }
-  for (const ActivePull& pull : work.pulls) {
-    add_pull_forces(pull, work.positions, residual, t);
-    subtract_pull_product(pull, work.positions, t * seconds.position, end_velocities, residual);
-    if (!work.offsets.empty()) subtract_pull_product(pull, work.positions, t, work.offsets, residual);
-  }
-  for (std::size_t i = 0; i < residual.size(); ++i)
-    if (work.pinned.held[i] != 0) residual[i].setZero();
-}
-
-void correct_translations(const Simulator::Parts& parts, StepWork& work) {
-  const std::vector<std::uint8_t> held = parts.held_pieces(work.pinned, work.pulls);
-  std::vector<Vec3> missing(held.size(), Vec3::Zero());
-  std::vector<double> mass(held.size(), 0);
-  for (std::size_t i = 0; i < parts.nodes(); ++i) {
-    const auto piece = static_cast<std::size_t>(parts.pieces.of_node[i]);
-    missing[piece] += work.right_side[i] - work.node_terms[i] * work.change[i];
-    mass[piece] += work.node_terms[i];
-  }
-  for (std::size_t i = 0; i < parts.nodes(); ++i) {
-    const auto piece = static_cast<std::size_t>(parts.pieces.of_node[i]);
-    if (held[piece] == 0 && mass[piece] > 0) work.change[i] += missing[piece] / mass[piece];
-  }
-}
 
 /// Of which nodes are held and how often pulls have jumped; never 0. These change where a step begins. Stiffness that
 /// is keyed to nothing does so at the end of one, to which it is early already; bonds of glue come and go too often to
@@ -379,10 +292,10 @@ StepReport Simulator::Parts::step(double frame, double seconds, double error_lim
   }
   work.constraints = params.integrator == Integrator::Euler ? 0 : fingerprint_of(work.pinned, model.pulls, frame);
   std::optional<SimulationState> before = begin_anew(*this, work);
-  begin_step(*this, work, seconds);
-  report = solve_step(*this, frame, work);
+  const bool staged = takes_two_stages(params, state);
+  if (staged && !before) before = state;
+  report = (staged ? take_two_stages : take_whole_step)(*this, frame, seconds, error_limit, work);
   if (ends_frame) coarse_lag.usable = false;
-  if (report.ok()) accept_or_reject(*this, work, error_limit, report);
   if (report.ok() && !report.rejected)
     state.grabs = grabs_at(frame);
   else if (before)

@@ -54,6 +54,13 @@ bool suits_float(Simulator::Parts& parts, const StepWork& work);
 /// does not do: then work.change means nothing, and the step is to be solved in double. step: gets what was kept.
 SolveReport solve_step_in_float(Simulator::Parts& parts, StepWork& work, StepReport& step);
 
+/// The system in double: for tolerances that float does not reach, and where it failed. Rigid motions of a very stiff
+/// part, and what is soft beside it, have rows that are small beside those of its stiffness. A residual relative to all
+/// of the right side has to be smaller by as much, or they are hardly solved, which acts like forces on them: blocks
+/// 1e8 times as stiff as those between them flew apart. A body that is all of one stiffness is solved tighter with
+/// them. Where that does not come to an end, the tolerance that was asked for is enough.
+SolveReport solve_step_in_double(Simulator::Parts& parts, StepWork& work);
+
 /// Finds work.change, and the rotations at the step's end, by Newton to force balance; work.right_side becomes the
 /// unbalanced forces.
 StepReport iterate_step(Simulator::Parts& parts, StepWork& work);

@@ -28,21 +28,36 @@ Vec3 last_mean_velocity(const SolverParams& params, const SimulationState& state
 /// Of the distance between predictor and end, what is the error of the end, by Taylor's series with steps of one
 /// length. Euler: h^2 a / 2 of h^2 a. BDF2: 2 / 9 of 2 / 9 + 5 / 12 times h^3 da/dt. Newmark: beta - 1 / 6 of beta
 /// times that.
-double error_share(const SolverParams& params, const SimulationState& state) {
+double error_share(const SolverParams& params) {
   if (params.integrator == Integrator::Newmark) return (params.newmark.beta - 1.0 / 6) / params.newmark.beta;
-  return has_memory(params, state) ? 8.0 / 23 : 0.5;
+  return params.integrator == Integrator::Bdf2 ? 8.0 / 23 : 0.5;
 }
 
 /// Euler: v = v0 + h a, x = x0 + h v.
 TimeStep begin_euler(const SimulationState& state, double h) {
-  return {h, {h, h}, state.positions, state.velocities};
+  return {h, {h, h}, state.positions, state.velocities, {h, 0}};
 }
 
-/// Backward differentiation of second order, for y = x and y = v.
-TimeStep begin_bdf2(const SimulationState& state, double h) {
-  const auto [seconds, back] = backward_difference(state, h);
+/// Backward differentiation of second order where `state` knows the step before it, for steps of any lengths: with the
+/// ratio of steps r = h / h0, the slope at the end of the parabola through y0 (a step of h0 earlier: yp) and y is
+/// (y - y0 - r^2 / (1 + 2 r) (y0 - yp)) (1 + 2 r) / ((1 + r) h).
+BackwardDifference backward_difference(const SimulationState& state, double h) {
+  if (state.previous_positions.empty()) return {h, 0};
+  const double r = h / state.previous_seconds;
+  return {h * (1 + r) / (1 + 2 * r), r * r / (1 + 2 * r)};
+}
+
+/// The second stage, h seconds after the first: see kFirstStage.
+BackwardDifference second_stage_difference(double h) {
+  return {h * kFirstStage / (1 - kFirstStage), 1 / kFirstStage - 2};
+}
+
+/// Such a difference for y = x and y = v.
+TimeStep begin_by_difference(const SimulationState& state, double h, const BackwardDifference& difference) {
+  const auto [seconds, back] = difference;
   TimeStep step = begin_euler(state, h);
   step.seconds = {seconds, seconds};
+  step.rate = difference;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     step.base_positions[i] += back * (state.positions[i] - state.previous_positions[i]);
     step.base_velocities[i] += back * (state.velocities[i] - state.previous_velocities[i]);
@@ -64,6 +79,7 @@ TimeStep begin_newmark(const NewmarkParams& newmark, const SimulationState& stat
   const double share = newmark.beta / newmark.gamma;
   TimeStep step = begin_euler(state, h);
   step.seconds = {newmark.gamma * h, share * h};
+  step.rate = backward_difference(state, h);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     step.base_positions[i] += (1 - share) * h * state.velocities[i] + (0.5 - share) * h * h * state.accelerations[i];
     step.base_velocities[i] += (1 - newmark.gamma) * h * state.accelerations[i];
@@ -73,12 +89,8 @@ TimeStep begin_newmark(const NewmarkParams& newmark, const SimulationState& stat
 
 }  // namespace
 
-/// With the ratio of steps r = h / h0: the slope at the end of the parabola through y0 (a step of h0 earlier: yp) and y
-/// is (y - y0 - r^2 / (1 + 2 r) (y0 - yp)) (1 + 2 r) / ((1 + r) h).
-BackwardDifference backward_difference(const SimulationState& state, double h) {
-  if (state.previous_positions.empty()) return {h, 0};
-  const double r = h / state.previous_seconds;
-  return {h * (1 + r) / (1 + 2 * r), r * r / (1 + 2 * r)};
+bool takes_two_stages(const SolverParams& params, const SimulationState& state) {
+  return params.integrator == Integrator::Bdf2 && !has_memory(params, state);
 }
 
 bool lacks_accelerations(const SolverParams& params, const SimulationState& state) {
@@ -97,10 +109,12 @@ void forget_before_jump(const SolverParams& params, std::span<const std::uint8_t
   state.previous_accelerations.clear();
 }
 
-TimeStep begin_time_step(const SolverParams& params, const SimulationState& state, double h) {
+TimeStep begin_time_step(const SolverParams& params, const SimulationState& state, double h, StepStage stage) {
   switch (params.integrator) {
     case Integrator::Bdf2:
-      return has_memory(params, state) ? begin_bdf2(state, h) : begin_euler(state, h);
+      if (stage == StepStage::First) break;
+      return begin_by_difference(
+          state, h, stage == StepStage::Second ? second_stage_difference(h) : backward_difference(state, h));
     case Integrator::Newmark:
       return begin_newmark(params.newmark, state, h);
     case Integrator::Euler:
@@ -162,7 +176,18 @@ double estimate_error(const SolverParams& params, const SimulationState& state, 
   double greatest = 0;
   for (std::size_t i = 0; i < positions.size(); ++i)
     if (held[i] == 0) greatest = std::max(greatest, (positions[i] - predicted[i]).norm());
-  return error_share(params, state) * greatest;
+  return error_share(params) * greatest;
+}
+
+/// With the method's amplification (1 + (1 - 2 g) z) / (1 - g z)^2, the error of a step is 3 g^2 - 2 g^3 - 1 / 6 of h^3
+/// da/dt, and the stages' ends are (1 - g) h apart.
+double estimate_staged_error(double h, std::span<const std::uint8_t> held, std::span<const Vec3> first_accelerations,
+                             std::span<const Vec3> second_accelerations) {
+  constexpr double g = kFirstStage, kShare = (3 * g * g - 2 * g * g * g - 1.0 / 6) / (1 - g);
+  double greatest = 0;
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (held[i] == 0) greatest = std::max(greatest, (second_accelerations[i] - first_accelerations[i]).norm());
+  return kShare * h * h * greatest;
 }
 
 void remember(const SolverParams& params, const TimeStep& step, const SimulationState& before,

@@ -21,7 +21,7 @@ namespace softreel {
 /// Floats that one element's curvature takes: three rows of three, each with one that is not used.
 inline constexpr std::size_t kCurvatureFloats = 12;
 
-/// Terms of the system of core/dynamics/step.cpp.
+/// Terms of the system of core/dynamics/step_system.cpp.
 struct StepTerms {
   /// g_i = sqrt(s V mu) Q b_i as x y z r with r = step_pressure_slope over mu: elements x 4 x 4.
   /// Block (i, j) of S gains r g_i g_j^T + g_j g_i^T + (g_i . g_j) I.

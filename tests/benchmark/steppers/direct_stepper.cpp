@@ -1,4 +1,5 @@
-// softreel's implicit Euler step (core/dynamics/step.cpp) with the linear system solved by other people's libraries.
+// softreel's implicit Euler step (core/dynamics/step_system.cpp) with the linear system solved by other people's
+// libraries.
 //
 // (M + h Ma + sum h (h + b) K_e + h^2 G) d = h f - (h Ma + h (h + b) K + h^2 G) v', d the change of velocity from v',
 // which is the velocity at the start or, of held nodes, that of their way; G: core/elasticity/tension.h. Held nodes are
@@ -23,7 +24,7 @@ namespace {
 using rivals::Rival;
 using rivals::ScalarSystem;
 
-/// Of the harmless tension that softreel leaves out of an Euler step's matrix (core/dynamics/step.cpp).
+/// Of the harmless tension that softreel leaves out of an Euler step's matrix (core/dynamics/step_system.cpp).
 constexpr double kExplicitShare = 0.5;
 
 const char* name_of(DirectSolver solver) {
