@@ -32,6 +32,8 @@ class FollowedMotion {
   /// Ties of points at rest, given by place and number among the vertices of the body's surface; none where all space
   /// moves as one.
   virtual std::vector<FollowTie> tie(std::span<const Vec3> points, std::span<const Index> vertices) const = 0;
+  /// Of points that each hang on what is nearest to it: how far the farthest is from there, m. 0 for others.
+  virtual double farthest_from(std::span<const Vec3> points, std::span<const FollowTie> ties) const;
   /// The motion from rest to `frame` at each tie; one for all where there are no ties.
   virtual std::vector<LocalMotion> motions(std::span<const FollowTie> ties, double frame) const = 0;
   /// Numbers that are equal at two frames only if the motion is: what keys of results hash.
@@ -39,6 +41,10 @@ class FollowedMotion {
   /// Of all that shapes the motion beside the pose.
   virtual std::uint64_t content() const = 0;
 };
+
+inline double FollowedMotion::farthest_from(std::span<const Vec3>, std::span<const FollowTie>) const {
+  return 0;
+}
 
 /// Seconds of a clip at a frame of the shot; before its start they are below 0.
 struct ClipTiming {

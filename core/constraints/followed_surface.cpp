@@ -99,6 +99,16 @@ std::vector<FollowTie> FollowedSurface::tie_to_vertices(std::span<const Index> v
   return ties;
 }
 
+double FollowedSurface::farthest_from(std::span<const Vec3> points, std::span<const FollowTie> ties) const {
+  double farthest = 0;
+  if (binding_ != Binding::Nearest) return farthest;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 hung = weighted(corners_of(ties[i].vertices, reference_), ties[i].weights);
+    farthest = std::max(farthest, (points[i] - hung).norm());
+  }
+  return farthest;
+}
+
 std::vector<LocalMotion> FollowedSurface::motions(std::span<const FollowTie> ties, double frame) const {
   std::vector<Index> corners;
   for (const FollowTie& tie : ties) corners.insert(corners.end(), tie.vertices.begin(), tie.vertices.end());

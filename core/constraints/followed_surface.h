@@ -26,6 +26,7 @@ class FollowedSurface : public FollowedMotion {
                   const Placement& placement);
 
   std::vector<FollowTie> tie(std::span<const Vec3> points, std::span<const Index> vertices) const override;
+  double farthest_from(std::span<const Vec3> points, std::span<const FollowTie> ties) const override;
   std::vector<LocalMotion> motions(std::span<const FollowTie> ties, double frame) const override;
   std::vector<double> pose(double frame) const override { return vertices_->pose(timing_.seconds(frame)); }
   std::uint64_t content() const override;

@@ -63,6 +63,22 @@ std::vector<Vec3> positions_of(const std::vector<Index>& points, const SurfaceMe
   return positions;
 }
 
+/// Points that hang on a surface far from them turn and swing with it: seldom meant, and where the file is in another
+/// place or unit, never.
+void warn_of_far_ties(const FollowSettings& follow, const std::string& field, double farthest, const LoadedBody& loaded,
+                      const Log& log) {
+  constexpr double kFar = 0.1;
+  const double size = used_bounds(loaded.surface).diagonal();
+  if (farthest <= kFar * size) return;
+  log.warn(fmt::format(
+      "{}: {}.follow: points hang on the nearest place of {} up to {:.3g} m away from them, {:.0f} % of the body's "
+      "diagonal. {}",
+      to_string(follow.origin), field, follow.file, farthest, 100 * farthest / size,
+      follow.in_scene
+          ? "If it is in the units and axes of the body's own file, take placement = \"body\"."
+          : "If its numbers are metres in the scene, as softreel's own glTF has them, take placement = \"scene\"."));
+}
+
 /// What pins and pulls share: their points move by keys, or as what they follow.
 template <typename Settings, typename Constraint>
 void add_motion(const Shot& shot, const Settings& settings, const LoadedBody& loaded, const std::string& field,
@@ -81,7 +97,9 @@ void add_motion(const Shot& shot, const Settings& settings, const LoadedBody& lo
   if (!settings.follow) return;
   constraint.follow = at_field(settings.follow->origin, field + ".follow",
                                [&] { return &files.motion(shot, *settings.follow, loaded, log); });
-  constraint.ties = constraint.follow->tie(positions_of(constraint.points, loaded.surface), constraint.points);
+  const std::vector<Vec3> positions = positions_of(constraint.points, loaded.surface);
+  constraint.ties = constraint.follow->tie(positions, constraint.points);
+  warn_of_far_ties(*settings.follow, field, constraint.follow->farthest_from(positions, constraint.ties), loaded, log);
 }
 
 /// Points that are painted at all.

@@ -17,6 +17,8 @@ int run_check(const ShotOptions& options) {
   SceneStage scenes(run);
   scenes.require_looks();
   scenes.load_images();
+  const GlueFacts glues = glue_facts(run);
+  for (const std::string& line : glues.warnings) session.context().log.warn(line);
   RunReport report = session.report("check", run);
   if (options.json) {
     std::printf("%s\n", to_json(report).c_str());
@@ -32,7 +34,7 @@ int run_check(const ShotOptions& options) {
     for (const Pin& pin : constraints.pins) std::printf("  %s: %zu points\n", pin.name.c_str(), pin.points.size());
     for (const Pull& pull : constraints.pulls) std::printf("  %s: %zu points\n", pull.name.c_str(), pull.points.size());
   }
-  for (const std::string& line : glue_facts(run)) std::printf("%s\n", line.c_str());
+  for (const std::string& line : glues.lines) std::printf("%s\n", line.c_str());
   std::printf("%s: sound.\n", session.shot().path.c_str());
   return 0;
 }

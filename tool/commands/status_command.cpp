@@ -45,8 +45,7 @@ void print(const StageStatus& status) {
                 status.per_frame && frames != status.frames.at(Condition::Stale)
                     ? fmt::format(" (frames {})", frame_ranges(frames)).c_str()
                     : "");
-  if (status.frames.count(Condition::Stale) > 0 && status.reasons.empty() && status.stage != "movie")
-    std::printf("    because another version of softreel, or another program, made it\n");
+  if (!status.cause.empty()) std::printf("    because %s\n", status.cause.c_str());
 }
 
 nlohmann::ordered_json to_json(const StageStatus& status) {
@@ -61,6 +60,7 @@ nlohmann::ordered_json to_json(const StageStatus& status) {
   for (const auto& [reason, frames] : status.reasons)
     json["because"].push_back(
         {{"field", reason.field}, {"before", reason.before}, {"after", reason.after}, {"frames", frames}});
+  if (!status.cause.empty()) json["cause"] = status.cause;
   return json;
 }
 

@@ -48,6 +48,7 @@ void add(Table<MaterialSettings>& table, const std::string& name, typename Keys:
   field.read = [=, read = field.read](const Place& place, const TomlValue& value, MaterialSettings& out) {
     if (!is_keys(value)) return read(place, value, out);
     AppearanceTrack track;
+    track.field = name;
     track.*Keys::kOf = member;
     auto& values = track.*Keys::kValues;
     values = keys.parse(place, value);

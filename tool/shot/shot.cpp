@@ -8,7 +8,8 @@ namespace softreel {
 
 std::string to_string(const Origin& origin) {
   if (origin.line == 0) return origin.file;
-  return fmt::format("{}:{}:{}", origin.file, origin.line, origin.column);
+  const std::string place = fmt::format("{}:{}:{}", origin.file, origin.line, origin.column);
+  return origin.changed_by.empty() ? place : fmt::format("{} with {}", place, origin.changed_by);
 }
 
 PixelWindow window_of(const RenderSettings& render) {

@@ -25,9 +25,10 @@ namespace softreel {
 struct Origin {
   std::string file;
   int line = 0, column = 0;
+  std::string changed_by = {};  ///< an option that changed a part of it, "--set"; empty: none
 };
 
-/// "FILE:LINE:COLUMN", or the file alone where there is no line.
+/// "FILE:LINE:COLUMN", or the file alone where there is no line, and what changed a part of it.
 std::string to_string(const Origin& origin);
 
 /// One value at all frames.
@@ -66,6 +67,7 @@ struct TextureSettings {
 
 /// A visible property that changes over the frames: of a number or of a colour.
 struct AppearanceTrack {
+  std::string field;  ///< of the material
   float Appearance::*number = nullptr;
   Track<double> numbers;
   Vec3f Appearance::*color = nullptr;

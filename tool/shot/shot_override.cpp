@@ -203,6 +203,7 @@ void apply_override(TomlValue& document, const Override& override_value) {
   for (const Step& step : steps) {
     const bool named = pattern == "body" || pattern == "material";
     const bool is_off = std::holds_alternative<bool>(value.data) && !std::get<bool>(value.data);
+    if (at != &document) at->origin.changed_by = override_value.option;
     if (&step == &steps.back() && !step.is_index && at->table() != nullptr && !is_off)
       erase_alternatives(*at, pattern, step.key);
     at = &follow(*at, step, override_value, walked);

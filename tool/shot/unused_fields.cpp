@@ -12,11 +12,14 @@ class UnusedFields {
   std::vector<std::string> find() {
     of_simulation();
     of_camera();
+    of_surroundings();
+    of_pictures();
+    for (const auto& [name, material] : shot_.materials) of_textures(name, material.textures);
     return std::move(lines_);
   }
 
  private:
-  void note(bool differs, const char* field, const char* reason) {
+  void note(bool differs, const std::string& field, const char* reason) {
     if (differs) lines_.push_back(fmt::format("{}: {} has no effect: {}.", shot_.path, field, reason));
   }
 
@@ -40,6 +43,8 @@ class UnusedFields {
   void of_camera() {
     const CameraSettings& camera = shot_.camera;
     const CameraSettings plain;
+    note(camera.f_number == 0 && !camera.focus_distance.keys.empty(), "camera.focus_distance",
+         "everything is sharp (camera.f_number = 0)");
     if (camera.mode == CameraMode::Place) {
       const char* reason = "it frames the bodies, and the camera is placed (camera.position)";
       note(camera.azimuth_deg != plain.azimuth_deg, "camera.azimuth_deg", reason);
@@ -51,6 +56,45 @@ class UnusedFields {
     const char* reason = "camera.mode = \"frame\" finds its own place";
     note(!camera.position.keys.empty(), "camera.position", reason);
     note(!camera.target.keys.empty(), "camera.target", reason);
+  }
+
+  void of_surroundings() {
+    const Environment &environment = shot_.environment, plain;
+    const bool has_image = !shot_.environment_image.empty();
+    if (shot_.sky || has_image) {
+      const char* reason = shot_.sky ? "environment.sky is there instead" : "environment.image is there instead";
+      note(shot_.sky && has_image, "environment.image", reason);
+      note(environment.zenith != plain.zenith, "environment.zenith", reason);
+      note(environment.horizon != plain.horizon, "environment.horizon", reason);
+      note(environment.nadir != plain.nadir, "environment.nadir", reason);
+    }
+    if (!shot_.ground) return;
+    const Ground &ground = *shot_.ground, flat;
+    note(ground.style == GroundStyle::Plane && ground.sweep != flat.sweep, "ground.sweep",
+         "it is of ground.style = \"sweep\"");
+    note(ground.checker == 0 && ground.checker_color != flat.checker_color, "ground.checker_color",
+         "there is no pattern (ground.checker = 0)");
+  }
+
+  void of_pictures() {
+    note(shot_.render.heat.quantity == HeatQuantity::None && shot_.render.heat.range, "render.heat_range",
+         "no quantity is shown (render.heat)");
+    note(shot_.render.params.channels.bits != 0 && !shot_.output.exr, "render.channels",
+         "they are of EXR files (output.exr = false)");
+  }
+
+  void of_textures(const std::string& name, const TextureSettings& textures) {
+    const TextureSettings plain;
+    const std::string field = "material." + name + ".";
+    const char* reason = "the material has no such texture";
+    if (!textures.any()) {
+      note(textures.scale != plain.scale, field + "texture_scale", reason);
+      note(textures.offset != plain.offset, field + "texture_offset", reason);
+      note(textures.wrap != plain.wrap, field + "texture_wrap", reason);
+    }
+    note(textures.normal.empty() && textures.normal_strength != plain.normal_strength, field + "normal_strength",
+         reason);
+    note(textures.bump.empty() && textures.bump_height != plain.bump_height, field + "bump_height", reason);
   }
 
   const Shot& shot_;

@@ -8,8 +8,8 @@
 
 namespace softreel {
 
-/// A line for each field of [shot], [solver] and [camera] that differs from its default while another one, named, takes
-/// its effect.
+/// A line for each field that differs from its default while another one, named, takes its effect, or what it is of is
+/// not there.
 std::vector<std::string> find_unused_fields(const Shot& shot);
 
 }  // namespace softreel

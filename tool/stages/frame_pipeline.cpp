@@ -73,19 +73,21 @@ class Pipeline {
     } else if (pictures_.recall(frame, trace)) {
       job.source = sent_.count(trace) > 0 ? PictureSource::Linked : PictureSource::Recalled;
     } else if (pictures_.develop(frame, trace)) {
-      job.source = PictureSource::Developed;
+      job.source = sent_.count(trace) > 0 ? PictureSource::Linked : PictureSource::Developed;
     } else {
       sent_.insert(trace);
       job.scene = scenes_.at(frame, run_.skin(frame, skin_request(run_.shot().render)));
       job.content = scenes_.content_key(frame, job.scene);
-      job.source = recall_equal(frame, job.content);
+      const bool is_own = !prepared_.insert(job.content).second;
+      job.source = recall_equal(frame, job.content, is_own);
     }
     return job;
   }
 
-  std::optional<PictureSource> recall_equal(int frame, const StageKey& content) {
+  /// is_own: this run traces it, so that what may be found half stored is not developed from an earlier run.
+  std::optional<PictureSource> recall_equal(int frame, const StageKey& content, bool is_own = false) {
     if (pictures_.recall(frame, content)) return PictureSource::Linked;
-    if (pictures_.develop(frame, content)) return PictureSource::Developed;
+    if (pictures_.develop(frame, content)) return is_own ? PictureSource::Linked : PictureSource::Developed;
     return std::nullopt;
   }
 
@@ -93,7 +95,7 @@ class Pipeline {
   bool finish(FrameJob& job) {
     if (!job.source && traced_.count(job.content) > 0) {
       writer_.finish();
-      job.source = recall_equal(job.frame, job.content);
+      job.source = recall_equal(job.frame, job.content, true);
     }
     if (!job.source && !trace(job)) return false;
     count(job.frame, *job.source);
@@ -149,9 +151,10 @@ class Pipeline {
   CacheUse& use_;
   const FrameDone& done_;
   std::size_t depth_;
-  std::vector<int> busy_;      ///< frames that other processes are tracing
-  std::set<StageKey> sent_;    ///< trace keys of frames that this run sent to be traced; of the preparing thread
-  std::set<StageKey> traced_;  ///< contents of this run
+  std::vector<int> busy_;        ///< frames that other processes are tracing
+  std::set<StageKey> sent_;      ///< trace keys of frames that this run sent to be traced; of the preparing thread
+  std::set<StageKey> prepared_;  ///< contents that this run has asked for; of the preparing thread
+  std::set<StageKey> traced_;    ///< contents of this run
   PictureCounts counts_;
   BehindStream writer_;  ///< last: its jobs use the others
 };

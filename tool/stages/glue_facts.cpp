@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/tetmesh/triangle_tree.h"
+#include "tool/bodies/simulate_key.h"
 
 namespace softreel {
 namespace {
@@ -19,8 +20,8 @@ const LoadedBody& find_loaded(const ShotRun& run, const std::string& name) {
 
 }  // namespace
 
-std::vector<std::string> glue_facts(const ShotRun& run) {
-  std::vector<std::string> lines;
+GlueFacts glue_facts(const ShotRun& run) {
+  GlueFacts facts;
   const std::vector<GlueSettings>& glues = run.shot().glues;
   for (std::size_t g = 0; g < glues.size(); ++g) {
     const GlueSettings& glue = glues[g];
@@ -33,11 +34,17 @@ std::vector<std::string> glue_facts(const ShotRun& run) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Index point : points)
       nearest = std::min(nearest, tree.nearest(surface.positions[static_cast<std::size_t>(point)]).squared_distance);
-    lines.push_back(fmt::format("{} ({}): {} points of {}, at rest the nearest is {:.4g} m from {}", field,
-                                to_string(glue.origin), points.size(), glue.bodies[0], std::sqrt(nearest),
-                                glue.bodies[1]));
+    nearest = std::sqrt(nearest);
+    facts.lines.push_back(fmt::format("{} ({}): {} points of {}, at rest the nearest is {:.4g} m from {}", field,
+                                      to_string(glue.origin), points.size(), glue.bodies[0], nearest, glue.bodies[1]));
+    if (nearest > glue.distance && is_active(glue.active, first_simulated_frame(run.shot())))
+      facts.warnings.push_back(fmt::format(
+          "{} ({}): it starts with the shot, at rest no selected point of {} is within distance = {:g} m, and where "
+          "glue starts with nothing to stick the simulation ends. Move the bodies together, set a greater distance, or "
+          "an active range that starts where they touch.",
+          field, to_string(glue.origin), glue.bodies[0], glue.distance));
   }
-  return lines;
+  return facts;
 }
 
 }  // namespace softreel

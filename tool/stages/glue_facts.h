@@ -8,7 +8,11 @@
 
 namespace softreel {
 
-/// A line for each glue of the shot: how many points may stick, and how near the nearest is where the bodies rest.
-std::vector<std::string> glue_facts(const ShotRun& run);
+struct GlueFacts {
+  std::vector<std::string> lines;     ///< one a glue: how many points may stick, and how near the nearest is at rest
+  std::vector<std::string> warnings;  ///< of glue that starts with the shot, where nothing is near enough to stick
+};
+
+GlueFacts glue_facts(const ShotRun& run);
 
 }  // namespace softreel

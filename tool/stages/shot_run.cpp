@@ -9,6 +9,7 @@
 #include "tool/bodies/held_ranges.h"
 #include "tool/bodies/simulate_key.h"
 #include "tool/cache/stage_names.h"
+#include "tool/shot/missed_keys.h"
 #include "tool/shot/unused_fields.h"
 #include "tool/stages/heat_map.h"
 
@@ -25,6 +26,7 @@ struct ShotRun::Body {
 
 ShotRun::ShotRun(const Shot& shot, const RunContext& context, DialUse dial) : shot_(shot), context_(context) {
   for (const std::string& line : find_unused_fields(shot)) context.log.warn(line);
+  for (const std::string& line : find_missed_keys(shot)) context.log.warn(line);
   for (std::size_t b = 0; b < shot.bodies.size(); ++b) {
     const BodySettings& settings = shot.bodies[b];
     context.stop_if_cancelled();

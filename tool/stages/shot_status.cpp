@@ -73,6 +73,9 @@ class StatusFinder {
       status.frames[condition].push_back(name.frame);
       if (condition == Condition::Stale) explain(status, name, key);
     }
+    for (StageStatus& status : statuses_)
+      if (status.frames.contains(Condition::Stale) && status.reasons.empty())
+        status.cause = "another version of softreel, or another program, made it";
     release_unneeded();
     add_movie();
     add_sheet();
@@ -194,7 +197,9 @@ class StatusFinder {
         std::sort(unneeded.begin(), unneeded.end());
         status.frames.erase(condition);
       }
-      if (!is_picture(status)) status.reasons.clear();
+      if (is_picture(status)) continue;
+      status.reasons.clear();
+      status.cause.clear();
     }
   }
 
@@ -202,7 +207,7 @@ class StatusFinder {
     const ShotSettings& settings = shot_.settings;
     if (!shot_.output.movie || !shot_.output.png || settings.first_frame == settings.last_frame) return;
     StageStatus status{kMovie, "mp4", {}, false, {}};
-    status.frames[whole_condition(movie_state(shot_, settings.first_frame, settings.last_frame, outputs_))] = {0};
+    take_state(movie_state(shot_, settings.first_frame, settings.last_frame, outputs_), status);
     statuses_.push_back(std::move(status));
   }
 
@@ -211,15 +216,25 @@ class StatusFinder {
     StageStatus status{kSheet, "png", {}, false, {}};
     const std::vector<int> frames =
         sheet_frames(shot_.settings.first_frame, shot_.settings.last_frame, SheetOptions().count);
-    status.frames[whole_condition(sheet_state(shot_, frames, SheetOptions().columns, outputs_))] = {0};
+    take_state(sheet_state(shot_, frames, SheetOptions().columns, outputs_), status);
     statuses_.push_back(std::move(status));
   }
 
   /// Of a file that is made of all pictures. One that nobody knows is not of this shot.
-  Condition whole_condition(OutputState state) const {
-    if (state == OutputState::Missing) return Condition::Missing;
-    if (state == OutputState::Damaged) return Condition::Damaged;
-    return state == OutputState::Done && pictures_done() ? Condition::Done : Condition::Stale;
+  void take_state(OutputState state, StageStatus& status) const {
+    const bool whole = state == OutputState::Done && pictures_done();
+    const Condition condition = state == OutputState::Missing   ? Condition::Missing
+                                : state == OutputState::Damaged ? Condition::Damaged
+                                : whole                         ? Condition::Done
+                                                                : Condition::Stale;
+    status.frames[condition] = {0};
+    if (condition != Condition::Stale) return;
+    if (!pictures_done())
+      status.cause = "not all pictures that it shows are done";
+    else if (state == OutputState::Unknown)
+      status.cause = "another program made it";
+    else
+      status.cause = "it was made of other pictures, or with other settings";
   }
 
   bool pictures_done() const {

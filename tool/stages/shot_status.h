@@ -35,8 +35,9 @@ struct StageStatus {
   std::map<Condition, std::vector<int>> frames;  ///< rising; one entry (frame 0) for what is not made per frame
   bool per_frame = true;
   /// Why what is stale is: fields that change its key when they alone are put back, each with its stale frames. Empty
-  /// if another version of softreel made it.
+  /// if there is none, then:
   std::map<StaleReason, std::vector<int>> reasons;
+  std::string cause = {};  ///< in words
 
   bool done() const {
     return std::all_of(frames.begin(), frames.end(), [](const auto& entry) {

@@ -22,15 +22,28 @@ Index count_pieces(const TetMesh& mesh) {
 
 namespace {
 
-/// Volume of the tetrahedra in units of the surface's, where that is known: of one closed part. Else 1.
-double share_of_volume(const TetMesh& mesh, const Solid& solid) {
-  if (solid.parts.parts.size() != 1 || solid.has_open_parts()) return 1;
+double filled_volume(const TetMesh& mesh) {
   double volume = 0;
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
     const auto node = [&](std::size_t k) -> const Vec3& { return mesh.nodes[at(mesh.tets[e][k])]; };
     volume += mesh.fill_of(e) * tet_volume(node(0), node(1), node(2), node(3));
   }
-  return volume / std::abs(solid.parts.parts.front().volume);
+  return volume;
+}
+
+/// Volume of the tetrahedra in units of the surface's, where that is known: of one closed part. Else 1.
+double share_of_volume(const TetMesh& mesh, const Solid& solid) {
+  if (solid.parts.parts.size() != 1 || solid.has_open_parts()) return 1;
+  return filled_volume(mesh) / std::abs(solid.parts.parts.front().volume);
+}
+
+/// The same of several closed parts, but of all volumes together: what overlaps and cavities count too often, so it is
+/// that or more.
+double least_share_of_volume(const TetMesh& mesh, const Solid& solid) {
+  if (solid.has_open_parts()) return 1;
+  double volume = 0;
+  for (const SurfacePart& part : solid.parts.parts) volume += std::abs(part.volume);
+  return filled_volume(mesh) / volume;
 }
 
 /// Whether the tetrahedra miss so much of a surface that a loss of volume may come from there. If not, it overlaps
@@ -120,6 +133,16 @@ void warn_of_tunnels(const StuffedMesh& stuffed, const Solid& solid, const std::
 void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads,
                     const Log& log) {
   constexpr double kMost = 0.05;
+  if (solid.parts.parts.size() > 1) {
+    const double more = least_share_of_volume(mesh, solid) - 1;
+    if (more > kMost)
+      log.warn(
+          fmt::format("body '{}': the tetrahedra have {:.0f} % or more too much volume, for what the {} parts of "
+                      "the surface enclose: what is thinner than they are was thickened. A smaller edge or more "
+                      "tets follow it better.",
+                      name, 100 * more, solid.parts.parts.size()));
+    return;
+  }
   const double more = share_of_volume(mesh, solid) - 1;
   if (std::abs(more) <= kMost) return;
   const SurfacePart& part = solid.parts.parts.front();

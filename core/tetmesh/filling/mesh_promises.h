@@ -44,7 +44,8 @@ Index count_new_tunnels(const StuffedMesh& stuffed, const Solid& solid);
 /// Warns of them.
 void warn_of_tunnels(const StuffedMesh& stuffed, const Solid& solid, const std::string& name, const Log& log);
 
-/// Warns if the tetrahedra of a solid that is one closed part have more volume than it, or less.
+/// Warns if the tetrahedra of a solid that is one closed part have more volume than it, or less; of several, if they
+/// have more than all of these together.
 void warn_of_volume(const TetMesh& mesh, const Solid& solid, const std::string& name, const Threads& threads,
                     const Log& log);
 

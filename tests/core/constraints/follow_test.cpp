@@ -122,6 +122,7 @@ TEST(FollowedSurface, CarriesPointsOnAndOffItAsItsTrianglesMove) {
     EXPECT_LT((rest[i].apply(points[i]) - points[i]).norm(), kRoundOff);
     EXPECT_LT((moved[i].apply(points[i]) - turned_and_doubled(points[i])).norm(), 1e-6) << "point " << i;
   }
+  EXPECT_NEAR(surface.farthest_from(points, ties), 0.4, kRoundOff) << "of the second point";
 }
 
 TEST(FollowedSurface, CarriesVerticesByNumberToWhereTheFileHasThem) {

@@ -140,5 +140,15 @@ TEST(BridgeThinParts, SaysHowMuchVolumeItAddedAtSharpEdges) {
   EXPECT_NE(lines.back().find("% more volume"), std::string::npos) << lines.back();
 }
 
+/// A thin slab and a leg through it: what both enclose is known to be no more than their sum.
+TEST(BridgeThinParts, SaysHowMuchVolumeItAddedToSeveralParts) {
+  SurfaceMesh surface = test::make_box(Vec3(0.5, 0.04, 0.5), 6, Vec3(0.5, 0.5, 0.5));
+  test::append(surface, test::make_box(Vec3(0.1, 0.3, 0.1), 6, Vec3(0.5, 0.3, 0.5)));
+  std::vector<std::string> lines;
+  fill(surface, 0.15, lines);
+  ASSERT_FALSE(lines.empty());
+  EXPECT_NE(lines.back().find("% or more too much volume"), std::string::npos) << lines.back();
+}
+
 }  // namespace
 }  // namespace softreel

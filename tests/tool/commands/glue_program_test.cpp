@@ -126,6 +126,11 @@ TEST_F(GluedBalls, AreCheckedWithTheDistanceBetweenThem) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   for (const char* part : {"glue[0]", "points of hat", "the nearest is 0.25 m from ball"})
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\nin\n" << outcome.out;
+  EXPECT_NE(outcome.err.find("no selected point of hat is within distance = 0.05 m"), std::string::npos) << outcome.err;
+  start("checked_near");
+  EXPECT_EQ(run(fmt::format("softreel check {}/shot.toml", folder_)).err, "");
+  start("checked_later", 1.25, "distance = 0.05\nactive = [3, 4]");
+  EXPECT_EQ(run(fmt::format("softreel check {}/shot.toml", folder_)).err, "") << "they may have come near by then";
 }
 
 TEST_F(GluedBalls, TooFarApartOrSelectingNothingIsAWrongInput) {

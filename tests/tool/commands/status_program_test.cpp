@@ -98,6 +98,17 @@ TEST_F(Status, KnowsFramesOfSeveralVersionsApart) {
   EXPECT_EQ(pictures["because"][0]["before"], "60");
 }
 
+TEST_F(Status, SaysWhyASheetIsStale) {
+  start("sheet");
+  const std::string with_sheet = "--set output.contact_sheet=true";
+  render(with_sheet);
+  EXPECT_EQ(stage("sheet", with_sheet)["condition"], "done");
+  ASSERT_EQ(softreel("sheet", "--quiet --count 2").status, 0);
+  EXPECT_EQ(stage("sheet", with_sheet)["cause"], "it was made of other pictures, or with other settings");
+  std::filesystem::remove(folder_ + "/out/ball.0002.png");
+  EXPECT_EQ(stage("sheet", with_sheet)["cause"], "not all pictures that it shows are done");
+}
+
 TEST_F(Status, FindsAChangedMeshAndDamage) {
   start("damage");
   render();

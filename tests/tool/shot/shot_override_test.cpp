@@ -144,6 +144,14 @@ TEST_F(SetOverrides, SayWhatIsWrongWithThem) {
   }
 }
 
+/// What is wrong may be what the file says or what the option put there.
+TEST_F(SetOverrides, AreNamedBesideThePlaceOfTheTableThatTheyChange) {
+  const std::string text = body("[[light]]\ntype = \"area\"\n[[light]]\ntype = \"area\"\n");
+  const Shot shot = load(text, {"light[1].power=3"});
+  EXPECT_EQ(to_string(shot.lights[0].origin).find("--set"), std::string::npos);
+  EXPECT_TRUE(to_string(shot.lights[1].origin).ends_with(" with --set")) << to_string(shot.lights[1].origin);
+}
+
 TEST_F(SetOverrides, AskWhichOfSeveralBodiesIsMeant) {
   const std::string said = message(kFullShot, {"body.tets=3"});
   EXPECT_NE(said.find("the shot has 4 bodies"), std::string::npos) << said;

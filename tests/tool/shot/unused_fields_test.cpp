@@ -57,6 +57,53 @@ TEST(UnusedFields, DependOnTheCamera) {
   EXPECT_TRUE(says(shot, "camera.position") && says(shot, "camera.target") && !says(shot, "camera.margin"));
   shot.camera.mode = CameraMode::Place;
   EXPECT_TRUE(says(shot, "camera.margin") && says(shot, "camera.azimuth_deg") && !says(shot, "camera.position"));
+  shot.camera.focus_distance = constant_track(2.0);
+  EXPECT_TRUE(says(shot, "camera.focus_distance"));
+  shot.camera.f_number = 4;
+  EXPECT_FALSE(says(shot, "camera.focus_distance"));
+}
+
+TEST(UnusedFields, DependOnWhatSurroundsTheScene) {
+  Shot shot;
+  shot.environment.zenith = Vec3f(1, 0, 0);
+  EXPECT_EQ(said(shot), "");
+  shot.environment_image = "sky.hdr";
+  EXPECT_TRUE(says(shot, "environment.zenith") && !says(shot, "environment.image"));
+  shot.sky.emplace();
+  EXPECT_TRUE(says(shot, "environment.zenith") && says(shot, "environment.image"));
+}
+
+TEST(UnusedFields, DependOnTheGround) {
+  Shot shot;
+  shot.ground.emplace().sweep = 3;
+  shot.ground->checker_color = Vec3f(1, 0, 0);
+  EXPECT_TRUE(says(shot, "ground.sweep") && says(shot, "ground.checker_color"));
+  shot.ground->style = GroundStyle::Sweep;
+  shot.ground->checker = 0.5f;
+  EXPECT_EQ(said(shot), "");
+}
+
+TEST(UnusedFields, DependOnWhatPicturesShow) {
+  Shot shot;
+  shot.render.heat.range = Vec2(0, 1);
+  shot.render.params.channels.add(PictureChannel::Depth);
+  EXPECT_TRUE(says(shot, "render.heat_range") && says(shot, "render.channels"));
+  shot.render.heat.quantity = HeatQuantity::Stress;
+  shot.output.exr = true;
+  EXPECT_EQ(said(shot), "");
+}
+
+TEST(UnusedFields, DependOnTheTexturesOfTheMaterial) {
+  Shot shot;
+  TextureSettings& textures = shot.materials["wood"].textures;
+  textures.scale = Vec2(2, 2);
+  textures.normal_strength = 0.5;
+  textures.bump_height = 0.1;
+  for (const char* field : {"texture_scale", "normal_strength", "bump_height"})
+    EXPECT_TRUE(says(shot, std::string("material.wood.") + field)) << field;
+  textures.normal = "n.png";
+  EXPECT_TRUE(says(shot, "material.wood.bump_height"));
+  EXPECT_FALSE(says(shot, "material.wood.texture_scale") || says(shot, "material.wood.normal_strength"));
 }
 
 }  // namespace

@@ -1,0 +1,15 @@
+/// Keys that are meant to move something and lie where the shot has no frames.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tool/shot/shot.h"
+
+namespace softreel {
+
+/// A line for each field whose keys differ and all lie before the shot's first frame (of what is simulated: before the
+/// first of the preroll), or all after its last: it stands still.
+std::vector<std::string> find_missed_keys(const Shot& shot);
+
+}  // namespace softreel
