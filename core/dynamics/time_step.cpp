@@ -87,6 +87,21 @@ TimeStep begin_newmark(const NewmarkParams& newmark, const SimulationState& stat
   return step;
 }
 
+/// begin_time_step but for the lag.
+TimeStep begin_bases(const SolverParams& params, const SimulationState& state, double h, StepStage stage) {
+  switch (params.integrator) {
+    case Integrator::Bdf2:
+      if (stage == StepStage::First) break;
+      return begin_by_difference(
+          state, h, stage == StepStage::Second ? second_stage_difference(h) : backward_difference(state, h));
+    case Integrator::Newmark:
+      return begin_newmark(params.newmark, state, h);
+    case Integrator::Euler:
+      break;
+  }
+  return begin_euler(state, h);
+}
+
 }  // namespace
 
 bool takes_two_stages(const SolverParams& params, const SimulationState& state) {
@@ -109,18 +124,19 @@ void forget_before_jump(const SolverParams& params, std::span<const std::uint8_t
   state.previous_accelerations.clear();
 }
 
+double find_turn_lag(const SolverParams& params, const SimulationState& state, double h, StepStage stage) {
+  if (linearization(params) != Linearize::Predictor || params.integrator == Integrator::Euler) return 0;
+  if (stage == StepStage::First) return 1.0 / 3;
+  if (!has_memory(params, state)) return 0;
+  const double last = state.previous_seconds / h;
+  if (params.integrator == Integrator::Bdf2 && stage == StepStage::Whole) return 1.0 / 4 + last / 6 + last * last / 12;
+  return 1.0 / 3 + last / 2 + last * last / 6;  // by the line through the last two places
+}
+
 TimeStep begin_time_step(const SolverParams& params, const SimulationState& state, double h, StepStage stage) {
-  switch (params.integrator) {
-    case Integrator::Bdf2:
-      if (stage == StepStage::First) break;
-      return begin_by_difference(
-          state, h, stage == StepStage::Second ? second_stage_difference(h) : backward_difference(state, h));
-    case Integrator::Newmark:
-      return begin_newmark(params.newmark, state, h);
-    case Integrator::Euler:
-      break;
-  }
-  return begin_euler(state, h);
+  TimeStep step = begin_bases(params, state, h, stage);
+  step.turn_lag = find_turn_lag(params, state, h, stage);
+  return step;
 }
 
 HeldNode find_held_motion(const SolverParams& params, const SimulationState& state, std::size_t node,

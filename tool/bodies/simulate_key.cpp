@@ -9,7 +9,7 @@ namespace softreel {
 namespace {
 
 /// Raised whenever the same inputs would give other frames.
-constexpr const char* kSimulationVersion = "simulation 33";
+constexpr const char* kSimulationVersion = "simulation 34";
 
 void add(KeyHasher& key, const Transform& t) {
   key.add(t.translate).add(t.rotate).add(t.scale);
