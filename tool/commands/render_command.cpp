@@ -61,8 +61,13 @@ void remove_outdated(const Session& session, PictureStage& pictures, Outputs& ou
 /// Another program that renders other settings into the same folder takes the names of these pictures for its own.
 void require_own_pictures(const Session& session, const PictureStage& pictures, Outputs& outputs) {
   outputs.read_again();
-  const int replaced = pictures.count_replaced(session.frames().first, session.frames().last);
-  if (replaced == 0) return;
+  const auto [replaced, forgotten] = pictures.count_losses(session.frames().first, session.frames().last);
+  if (replaced == 0 && forgotten == 0) return;
+  if (replaced == 0)
+    throw work_error(fmt::format(
+        "{}: {} frames are gone: while this ran, the folder or its manifest was removed, or another softreel "
+        "began to render other settings of the shot there.\n  Run the same again: it makes what is missing.",
+        outputs.folder(), forgotten));
   throw work_error(
       fmt::format("{}: {} frames were replaced meanwhile by another softreel that renders other settings of the shot "
                   "there.\n  Give each an --output of its own, and run again.",

@@ -29,12 +29,10 @@ class MissedKeys {
     const auto& keys = track.keys;
     const auto moves = [](const Key<T>& a, const Key<T>& b) { return a.value != b.value; };
     if (std::adjacent_find(keys.begin(), keys.end(), moves) == keys.end()) return;
-    const int last = shot_.settings.last_frame;
-    const bool is_before = keys.back().frame < first_;
-    if (!is_before && keys.front().frame <= last) return;
-    lines_.push_back(fmt::format("{}: {} stands still: its keys, frames {:g} to {:g}, lie {} the shot's, {} to {}.",
-                                 shot_.path, field, keys.front().frame, keys.back().frame,
-                                 is_before ? "before" : "after", first_, last));
+    if (keys.back().frame >= first_) return;
+    lines_.push_back(fmt::format("{}: {} stands still: its keys, frames {:g} to {:g}, lie before the shot's, {} to {}.",
+                                 shot_.path, field, keys.front().frame, keys.back().frame, first_,
+                                 shot_.settings.last_frame));
   }
 
   template <typename Constraint>

@@ -1,4 +1,4 @@
-/// Keys that are meant to move something and lie where the shot has no frames.
+/// Keys that are meant to move something and lie before the shot.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace softreel {
 
 /// A line for each field whose keys differ and all lie before the shot's first frame (of what is simulated: before the
-/// first of the preroll), or all after its last: it stands still.
+/// first of the preroll): it stands still. Keys after its last frame are what a shot that is cut short has.
 std::vector<std::string> find_missed_keys(const Shot& shot);
 
 }  // namespace softreel

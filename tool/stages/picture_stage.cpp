@@ -101,17 +101,20 @@ bool PictureStage::has_outdated(int first, int last) const {
   return outputs_.has_outdated(own_keys(first, last));
 }
 
-int PictureStage::count_replaced(int first, int last) const {
-  int replaced = 0;
+PictureStage::Losses PictureStage::count_losses(int first, int last) const {
+  Losses losses;
   for (int frame = first; frame <= last; ++frame) {
     const std::vector<File> wanted = files(frame, trace_key(frame));
-    const bool is_own = std::all_of(wanted.begin(), wanted.end(), [&](const File& file) {
-      const auto entry = outputs_.entry(file.path);
-      return entry && entry->key == file.key;
-    });
-    replaced += is_own ? 0 : 1;
+    const auto any = [&](const auto& is_lost) {
+      return std::any_of(wanted.begin(), wanted.end(),
+                         [&](const File& file) { return is_lost(outputs_.entry(file.path), file.key); });
+    };
+    if (any([](const auto& entry, const StageKey& key) { return entry && entry->key != key; }))
+      ++losses.replaced;
+    else if (any([](const auto& entry, const StageKey&) { return !entry; }))
+      ++losses.forgotten;
   }
-  return replaced;
+  return losses;
 }
 
 bool PictureStage::recall(int frame, const StageKey& picture) {

@@ -56,8 +56,11 @@ class PictureStage {
   /// Whether that would remove any.
   bool has_outdated(int first, int last) const;
 
-  /// Of these frames, those that have a file which is of another key, or of none, in the manifest.
-  int count_replaced(int first, int last) const;
+  /// Frames that have a file which the manifest knows by another key, and others that have one it does not know.
+  struct Losses {
+    int replaced = 0, forgotten = 0;
+  };
+  Losses count_losses(int first, int last) const;
 
   /// Brings the frame's files from the cache under either key, if that can be done.
   bool recall(int frame, const StageKey& picture);

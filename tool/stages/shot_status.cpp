@@ -75,7 +75,7 @@ class StatusFinder {
     }
     for (StageStatus& status : statuses_)
       if (status.frames.contains(Condition::Stale) && status.reasons.empty())
-        status.cause = "another version of softreel, or another program, made it";
+        status.cause = status.cause.empty() ? "another version of softreel made it" : status.cause;
     release_unneeded();
     add_movie();
     add_sheet();
@@ -114,8 +114,11 @@ class StatusFinder {
         return Condition::Damaged;
       case OutputState::Missing:
         return Condition::Missing;
-      case OutputState::Stale:
       case OutputState::Unknown:
+        status_of(name).cause =
+            "the manifest does not know it: it is damaged or lost, or another program made the files";
+        break;
+      case OutputState::Stale:
         break;
     }
     return Condition::Stale;

@@ -109,6 +109,15 @@ TEST_F(Status, SaysWhyASheetIsStale) {
   EXPECT_EQ(stage("sheet", with_sheet)["cause"], "not all pictures that it shows are done");
 }
 
+TEST_F(Status, SaysThatADamagedManifestKnowsNoPictures) {
+  start("manifest");
+  render();
+  write_text(folder_ + "/out/ball.manifest.json", "");
+  const json pictures = stage("pictures");
+  EXPECT_EQ(pictures["stale"], json({1, 2, 3, 4}));
+  EXPECT_NE(pictures["cause"].get<std::string>().find("damaged or lost"), std::string::npos) << pictures;
+}
+
 TEST_F(Status, FindsAChangedMeshAndDamage) {
   start("damage");
   render();

@@ -1,4 +1,4 @@
-/// Which keys are said to lie where the shot has no frames.
+/// Which keys are said to lie before the shot.
 #include "tool/shot/missed_keys.h"
 
 #include <gtest/gtest.h>
@@ -25,18 +25,16 @@ std::vector<std::string> said_of_focus(const Track<double>& track) {
   return find_missed_keys(shot);
 }
 
-TEST(MissedKeys, AreThoseBeforeAndAfterTheShot) {
+TEST(MissedKeys, AreThoseBeforeTheShot) {
   EXPECT_EQ(said_of_focus(keyed(1, 12)),
             std::vector<std::string>{"a.toml: camera.focus_distance stands still: its keys, frames 1 to 12, lie before "
                                      "the shot's, 1001 to 1012."});
-  ASSERT_EQ(said_of_focus(keyed(1013, 1020)).size(), 1U);
-  EXPECT_NE(said_of_focus(keyed(1013, 1020))[0].find("after"), std::string::npos);
 }
 
 TEST(MissedKeys, AreNoneWhereTheShotMeetsThemOrTheyMoveNothing) {
   EXPECT_TRUE(said_of_focus(keyed(1, 1001)).empty());
   EXPECT_TRUE(said_of_focus(keyed(1, 2000)).empty());
-  EXPECT_TRUE(said_of_focus(keyed(1012, 1020)).empty());
+  EXPECT_TRUE(said_of_focus(keyed(1013, 1020)).empty()) << "it may be cut short";
   EXPECT_TRUE(said_of_focus(keyed(1, 12, 1)).empty()) << "both keys are one value";
   EXPECT_TRUE(said_of_focus(constant_track(3.0)).empty());
 }
